@@ -1,5 +1,6 @@
 #include "spectral_lines.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -88,6 +89,20 @@ void add_stick(const Motion& motion, const SampleRange& stick, double rate, std:
   }
 }
 
+/// Squares that a sinusoid takes off a series where it is not zero. frequency: in periods a sample.
+double squares_of_line(std::span<const double> series, double frequency) {
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    if (series[i] == 0) continue;
+    const double phase = (2 * std::numbers::pi) * frequency * static_cast<double>(i);
+    const Eigen::Vector2d wave(std::cos(phase), std::sin(phase));
+    normal += wave * wave.transpose();
+    right += wave * series[i];
+  }
+  return right.dot(normal.ldlt().solve(right));
+}
+
 }  // namespace
 
 double noise_without_line(const Record& record, double noise) {
@@ -103,13 +118,11 @@ double noise_without_line(const Record& record, double noise) {
   }
   if (count < kFewestOfStickLine) return noise;
   const Spectrum spectrum = amplitude_spectrum(series, motion.step);
-  double peak = 0;
-  for (const double a : spectrum.amplitude) peak = std::max(peak, a);
-  // The line fills only the sticks.
-  const double amplitude = peak * static_cast<double>(series.size()) / static_cast<double>(count);
-  const double variance = squares / static_cast<double>(count), line = 0.5 * amplitude * amplitude;
-  if (line < kLineInNoise * variance) return noise;
-  return std::sqrt(std::max(noise * noise - line, kLeftBesideLine * noise * noise));
+  const double frequency = peak_frequency(spectrum, 0, 0.5 / motion.step);
+  const double line = squares_of_line(series, frequency * motion.step), rest = squares - line;
+  if (line < kLineInNoise * squares) return noise;
+  // The noise that was given may have lost a part of a slow line already.
+  return std::min(noise, std::sqrt(std::max(rest, kLeftBesideLine * squares) / static_cast<double>(count)));
 }
 
 namespace {
