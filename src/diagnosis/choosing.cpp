@@ -87,13 +87,13 @@ class Standings {
       if (judged[k].passes && !judged[k].by_level && is_near) near.push_back(k);
     }
     const bool is_among = std::find(near.begin(), near.end(), *best_) != near.end();
-    const Level* finest = near.size() > 1 && is_among ? context.finest() : nullptr;
-    if (finest == nullptr) return;
+    if (near.size() < 2 || !is_among) return;
+    const Level& finest = context.finest();
     std::vector<Trial> trials(near.size());
     run_tasks(near.size(), context.threads, [&](std::size_t t) {
       const Trial& found = judged[near[t]].trial;
-      trials[t] = try_model(context, *finest, found.model, found.p, context.threads_each(near.size()));
-      if (trials[t].usable) trials[t].held_out_squares -= squares_of_velocity_noise(*finest, trials[t]);
+      trials[t] = try_model(context, finest, found.model, found.p, context.threads_each(near.size()));
+      if (trials[t].usable) trials[t].held_out_squares -= squares_of_velocity_noise(finest, trials[t]);
     });
     if (!std::all_of(trials.begin(), trials.end(), [](const Trial& trial) { return trial.usable; })) return;
     const auto least = std::min_element(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) {
@@ -104,7 +104,7 @@ class Standings {
       behind_[near[t]] = trials[t].held_out_squares - least->held_out_squares;
     // The design effect is that of the fine values; noise that correlates over a few samples is smaller between single
     // ones.
-    const double noise = std::max(noise_of(context.fine, judged[*best_].trial), noise_of(*finest, *least));
+    const double noise = std::max(noise_of(context.fine, judged[*best_].trial), noise_of(finest, *least));
     judge_by(context, noise * judged[*best_].design_effect);
   }
 

@@ -30,21 +30,16 @@ DiagnosisContext::DiagnosisContext(std::span<const Record> given, const Observat
       scatter(break_away_scatter),
       finest_(std::make_shared<Finest>()) {}
 
-const Level* DiagnosisContext::finest() const {
+const Level& DiagnosisContext::finest() const {
   std::call_once(finest_->made, [&] {
-    const std::size_t cycles = count_cycles(records), most = finest_values(cycles);
-    const auto is_finer = [](std::size_t more, std::size_t fewer) {
-      return static_cast<double>(more) >= limits::kLeastFiner * static_cast<double>(fewer);
-    };
-    if (!is_finer(most, fine_values(cycles))) return;
+    const std::size_t most = finest_values(count_cycles(records));
     finest_->observations = observe_all(records, fine.observations.noise, all_channels(records), most, noise);
-    if (!is_finer(finest_->observations->size(), fine.observations.size())) return;
     std::vector<double> left = quieten_velocity(records, *finest_->observations);
     finest_->level.emplace(*finest_->observations);
     finest_->level->velocity_noise = std::move(left);
     finest_->level->known = fine.known;
   });
-  return finest_->level ? &*finest_->level : nullptr;
+  return *finest_->level;
 }
 
 double DiagnosisContext::floor_squares(const ModelResiduals::Whitening& whitening) const {

@@ -26,8 +26,7 @@ inline constexpr std::size_t kFinestValues = 400000;
 inline constexpr double kContenderPart = 0.9;
 /// Of the time of a slip, over which v_r is smoothed there: what is faster is noise, but where the block breaks away.
 inline constexpr double kSmoothedPart = 0.03;
-inline constexpr double kLeastFiner = 1.5;          ///< so many times as many values: fewer show nothing new
-inline constexpr std::size_t kCoarseValues = 5000;  ///< enough to see which candidate is hopeless
+inline constexpr std::size_t kCoarseValues = 5000;                  ///< enough to see which candidate is hopeless
 inline constexpr std::size_t kFewestCoarse = 16, kMostCoarse = 40;  ///< a slip; 16 still show both of its branches
 
 // Blocks of cycles.

@@ -69,9 +69,9 @@ struct DiagnosisContext {
 
   int threads = 1;  ///< over candidates
 
-  /// More values a slip than `fine`, for models that come near each other; made when it is first asked for. nullptr
-  /// where there are no more.
-  const Level* finest() const;
+  /// As many values a slip as tell models that come near each other, with v_r as quiet as it can be; made when it is
+  /// first asked for.
+  const Level& finest() const;
 
   DiagnosisContext(std::span<const Record> given, const Observations& finely, const Observations& coarsely,
                    double sensor_noise, double break_away_scatter);

@@ -7,7 +7,6 @@
 
 #include "tribofit/friction/effects/force_bandwidth.hpp"
 #include "tribofit/friction/effects/sensor_inertia.hpp"
-#include "tribofit/friction/onset.hpp"
 
 namespace tribofit {
 
@@ -81,8 +80,8 @@ struct ChannelDelay {
       } else if (!slip.from_stick) {
         mu[i] = true_mu[0];
       } else if (at > slip.break_away_time) {
-        const T part = (late - slip.break_away_time) / (slip.time[0] - slip.break_away_time);
-        mu[i] = friction_of_onset(level, true_mu[0], part);
+        const T slope = (true_mu[0] - level) / (slip.time[0] - slip.break_away_time);
+        mu[i] = level + slope * (late - slip.break_away_time);
       } else {
         mu[i] = level + slip.stick_slope * (late - slip.break_away_time);
       }
@@ -90,13 +89,14 @@ struct ChannelDelay {
   }
 
   /// Friction between values `low` and `low` + 1. A straight line averages noise of v_r between samples and keeps it at
-  /// them, which draws a delay away from whole samples (1 ms to 1.024 ms where v_r has noise of 0.2 mm/s): where values
-  /// are samples, a cubic B-spline takes means of four that hold nearly the same noise wherever they are.
+  /// them, which draws a delay away from whole samples (1 ms to 1.024 ms where v_r has noise of 0.2 mm/s): within a
+  /// slip, where values are samples, a cubic B-spline takes means of four that hold nearly the same noise wherever they
+  /// are.
   template <class T>
   static T between(const Slip& slip, const std::vector<T>& mu, std::size_t low, const T& time) {
     const double step = slip.time[low + 1] - slip.time[low];
     const T part = (time - slip.time[low]) / step;
-    const bool is_spline = slip.velocity_variance.empty() && low > 0 && low + 2 < mu.size() &&
+    const bool is_spline = slip.from_stick && slip.velocity_variance.empty() && low > 0 && low + 2 < mu.size() &&
                            std::abs(slip.time[low + 2] - slip.time[low - 1] - 3 * step) < 0.1 * step;
     if (!is_spline) return mu[low] + (mu[low + 1] - mu[low]) * part;
     const T rest = 1.0 - part, square = part * part, cube = square * part;

@@ -5,7 +5,6 @@
 #include <span>
 
 #include "tribofit/friction/effects/sensor_inertia.hpp"
-#include "tribofit/friction/onset.hpp"
 
 namespace tribofit {
 
@@ -71,33 +70,26 @@ struct ForceBandwidth {
     const T lag = 2.0 * zeta / w, period = 1.0 / w;
     double last_dt = 0;  // samples are mostly equally far apart, and the turn over a step is dear
     T c = T(0.0 * w), s = T(0.0 * w);
-    const auto follow = [&](double time, const T& reached) {
-      const double dt = time - previous;
-      if (!(dt > 0)) return;
-      const T now = (reached - before) / dt;
-      // The line bends: e jumps by what its lag changes, e' by its slope.
-      e += lag * (now - slope);
-      rate -= period * (now - slope);
-      slope = now;
-      if (std::abs(dt - last_dt) > 1e-9 * dt) {
-        const T a = exp(-zeta * w * dt);
-        c = a * cos(root * w * dt);
-        s = a * sin(root * w * dt) / root;
-        last_dt = dt;
-      }
-      const T next = c * e + s * (rate + zeta * e);
-      rate = c * rate - s * (e + zeta * rate);
-      e = next;
-      previous = time;
-      before = reached;
-    };
-    const double onset = slip.time[0] - previous;
-    for (int k = 1; k < kOnsetPieces && onset > 0; ++k) {
-      const double part = static_cast<double>(k) / kOnsetPieces;
-      follow(slip.break_away_time + part * onset, friction_of_onset(level, mu[0], T(part + 0.0 * w)));
-    }
     for (std::size_t i = 0; i < mu.size(); ++i) {
-      follow(slip.time[i], mu[i]);
+      const double dt = slip.time[i] - previous;
+      if (dt > 0) {
+        const T now = (mu[i] - before) / dt;
+        // The line bends: e jumps by what its lag changes, e' by its slope.
+        e += lag * (now - slope);
+        rate -= period * (now - slope);
+        slope = now;
+        if (std::abs(dt - last_dt) > 1e-9 * dt) {
+          const T a = exp(-zeta * w * dt);
+          c = a * cos(root * w * dt);
+          s = a * sin(root * w * dt) / root;
+          last_dt = dt;
+        }
+        const T next = c * e + s * (rate + zeta * e);
+        rate = c * rate - s * (e + zeta * rate);
+        e = next;
+        previous = slip.time[i];
+        before = mu[i];
+      }
       mu[i] = before - lag * slope + e;
     }
   }
