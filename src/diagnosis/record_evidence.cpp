@@ -24,7 +24,16 @@ Channels all_channels(std::span<const Record> records) {
 
 std::vector<RecordNoise> noises_of(std::span<const Record> records, int threads) {
   std::vector<RecordNoise> noises;
-  for (const Record& record : records) noises.push_back(noise_of(*record.motion, *record.segmentation, threads));
+  for (const Record& record : records) {
+    RecordNoise noise = noise_of(*record.motion, *record.segmentation, threads);
+    const Floor floor = tribofit::floor_of(noise);
+    if (!record.motion->is_points() && floor.sampling == 0) {
+      const LineInStick line = line_in_stick(record, floor.noise);
+      noise.line = line.frequency;
+      noise.beside_line = line.noise;
+    }
+    noises.push_back(std::move(noise));
+  }
   return noises;
 }
 
@@ -58,10 +67,8 @@ std::size_t count_cycles(std::span<const Record> records) {
 Floor floor_of(std::span<const Record> records, std::span<const RecordNoise> noises) {
   double noise = 0, scatter = 0, sampling = 0;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const Record& record = records[r];
     const Floor floor = tribofit::floor_of(noises[r]);
-    const bool has_line = !record.motion->is_points() && floor.sampling == 0;
-    const double own = has_line ? noise_without_line(record, floor.noise) : floor.noise;
+    const double own = noises[r].line > 0 ? noises[r].beside_line : floor.noise;
     noise += std::pow(own, 2) / static_cast<double>(records.size());
     scatter += std::pow(floor.scatter, 2) / static_cast<double>(records.size());
     sampling += std::pow(floor.sampling, 2) / static_cast<double>(records.size());

@@ -13,6 +13,7 @@
 #include "tribofit/fit/solver.hpp"
 #include "tribofit/friction/evaluate.hpp"
 #include "tribofit/statistics/stop.hpp"
+#include "wave_start.hpp"
 
 namespace tribofit::diagnosis {
 
@@ -50,9 +51,8 @@ bool is_earned(const ModelResiduals::StickSquares& stick, double noise) {
   return gain <= 0 || gain >= limits::kCreepPart * shown;
 }
 
-/// To which part the squares of stick are weakened so that a law of creep leaves no more than noise there. A quiet v_r
-/// shows that no such law is exact, and the squares of a wrong one fall by more than all friction is worth: as errors
-/// that were stated too small (R. T. Birge, Phys. Rev. 40 (1932) 207) those of v_r are taken to be larger.
+/// Part to which squares of stick are weakened so that a law of creep leaves no more than noise there: none is exact,
+/// as a quiet v_r shows, and errors that were stated too small are enlarged (R. T. Birge, Phys. Rev. 40 (1932) 207).
 double part_of_stick(const ModelResiduals::StickSquares& stick, double noise) {
   return std::min(1.0, stick.rows * noise * noise / stick.left);
 }
@@ -370,7 +370,7 @@ SearchStart search_start_of(const DiagnosisContext& context, const Level& level,
     if (!plain || base.plain_squares - plain->there < least.plain) return found;
   }
   for (std::size_t k = 0; k < std::min(limits::kMostStarts, promises.size()); ++k)
-    found.starts.push_back(promises[k].start);
+    found.starts.push_back(with_amplitude_and_phase(residuals, model, candidate.info, bounds, promises[k].start));
   return found;
 }
 

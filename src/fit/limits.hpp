@@ -45,6 +45,8 @@ inline constexpr double kBesidePeak = 1.5, kFinerThanBin = 0.1;
 /// a line makes, from which it is taken off, and what is left of the variance at least.
 inline constexpr std::size_t kShortestStickOfLine = 20, kFewestOfStickLine = 1000;
 inline constexpr double kLineInNoise = 0.3, kLeftBesideLine = 0.05;
+/// Part of the frequency of such a line from which lines are looked for.
+inline constexpr double kBelowLineInStick = 0.9;
 
 /// Sine squared of the angle between what a break-away and what slow noise do to a slip, from which the two are
 /// distinct: less, and rounding decides. Standard errors by which the levels of neighbouring slips must differ by more

@@ -99,7 +99,7 @@ void go_on_from(const Observations::SlipObservation& before, Observations::SlipO
 void add_leads(const Motion& motion, const Segmentation& segmentation, Observations& out) {
   const double lead = 0.3 * out.scales.slip_time, mean = 0.03 * out.scales.slip_time;
   const std::size_t half = std::max<std::size_t>(1, static_cast<std::size_t>(0.5 * mean / motion.step));
-  const std::size_t every = std::max<std::size_t>(1, half / 2);
+  const std::size_t every = half;
   // Three standard deviations of the mean, twice over for noise that is coloured.
   const double noise = 6 * motion.velocity_noise / std::sqrt(2.0 * static_cast<double>(half) + 1);
   for (auto slip = out.slips.begin(); slip != out.slips.end(); ++slip) {

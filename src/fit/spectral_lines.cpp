@@ -68,7 +68,9 @@ double observation_rate(const Observations& observations) {
 }
 
 double lowest_steady_line(const Observations& observations) {
-  return frequency_of(kFewestPeriodsOfLine, observations);
+  const double line = observations.noise.empty() ? 0 : observations.noise[0].line;
+  const double shown = frequency_of(kFewestPeriodsOfLine, observations);
+  return line > 0 ? std::min(shown, kBelowLineInStick * line) : shown;
 }
 
 double lowest_ringing(const Observations& observations) {
@@ -105,9 +107,9 @@ double squares_of_line(std::span<const double> series, double frequency) {
 
 }  // namespace
 
-double noise_without_line(const Record& record, double noise) {
+LineInStick line_in_stick(const Record& record, double noise) {
   const Motion& motion = *record.motion;
-  if (motion.size() < kFewestTransformed || !(motion.step > 0)) return noise;
+  if (motion.size() < kFewestTransformed || !(motion.step > 0)) return {0, noise};
   std::vector<double> series(std::min(motion.size(), kMostTransformed / 2), 0.0);
   double squares = 0;
   std::size_t count = 0;
@@ -116,13 +118,14 @@ double noise_without_line(const Record& record, double noise) {
     squares += x * x;
     count += x != 0 ? 1 : 0;
   }
-  if (count < kFewestOfStickLine) return noise;
+  if (count < kFewestOfStickLine) return {0, noise};
   const Spectrum spectrum = amplitude_spectrum(series, motion.step);
   const double frequency = peak_frequency(spectrum, 0, 0.5 / motion.step);
   const double line = squares_of_line(series, frequency * motion.step), rest = squares - line;
-  if (line < kLineInNoise * squares) return noise;
+  if (line < kLineInNoise * squares) return {0, noise};
   // The noise that was given may have lost a part of a slow line already.
-  return std::min(noise, std::sqrt(std::max(rest, kLeftBesideLine * squares) / static_cast<double>(count)));
+  return {frequency,
+          std::min(noise, std::sqrt(std::max(rest, kLeftBesideLine * squares) / static_cast<double>(count)))};
 }
 
 namespace {

@@ -21,13 +21,19 @@ struct SpectralLines {
 SpectralLines strongest_lines(const Record& record, const Observations& observations, std::span<const double> residual,
                               double lowest, double highest);
 
-/// Sensor noise [1 or N] without the strongest line that runs through the sticks, where that line is most of it.
-double noise_without_line(const Record& record, double noise);
+/// The strongest line that runs through the sticks, where it is most of the noise there.
+struct LineInStick {
+  double frequency = 0;  ///< [Hz]; 0: there is none
+  double noise = 0;      ///< sensor noise without it [1 or N]
+};
+/// noise: with the line.
+LineInStick line_in_stick(const Record& record, double noise);
 
 /// The strongest line, if any, whose phase starts anew at each break-away, from `lowest` [Hz] up.
 SpectralLines strongest_ringing(const Observations& observations, std::span<const double> residual, double lowest);
 
-/// Below this a steady line has less than half a period in a slip: it moves slips as a whole, as slow noise does [Hz].
+/// Below this a steady line has less than half a period in a slip: it moves slips as a whole, as slow noise does,
+/// unless the sticks show it [Hz].
 double lowest_steady_line(const Observations& observations);
 
 /// Below this a ring has too few periods in a slip to be distinguished from the shape of the law [Hz].

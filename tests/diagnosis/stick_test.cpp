@@ -99,8 +99,8 @@ TEST(StickEvidence, IsSilentWhereNoiseIsNotKnown) {
 
 /// The diagnosis of a record of the published 15 mm rig.
 DiagnosedTraces diagnose_hidden(const std::string& key, const std::vector<double>& effect, double colour,
-                                double velocity_noise = 2e-5, double duration = 10) {
-  const Rig rig = rig_with_damping_ratio(0.85, 16.2e3, 0.02);
+                                double velocity_noise = 2e-5, double duration = 10,
+                                const Rig& rig = rig_with_damping_ratio(0.85, 16.2e3, 0.02)) {
   Drive drive;
   drive.radius = 0.015;
   drive.mean_load = 50;
@@ -188,6 +188,18 @@ TEST(StickEvidence, NoiseOfVelocityMakesNoFilterOfADelay) {
   const EffectFinding delay = finding_of(result, "channel-delay");
   ASSERT_EQ(delay.status, EffectStatus::found) << delay.reason;
   EXPECT_NEAR(delay.parameters[0].value, 1e-3, 0.005 * 1e-3);  // 2 % late where a straight line leads between samples
+}
+
+/// Mains hum of half a period in a slip: sticks show its frequency, which slips confuse with one that differs from it
+/// by that of stick-slip, and the noise beside it.
+TEST(StickEvidence, ShowsTheFrequencyOfHum) {
+  const Rig fast = rig_with_damping_ratio(0.2, 30e3, 0.02);
+  const DiagnosedTraces result = diagnose_hidden("interference", {0.01, 50, 0}, 0, 1e-4, 20, fast);
+  const EffectFinding hum = finding_of(result, "interference");
+  ASSERT_EQ(hum.status, EffectStatus::found) << hum.reason;
+  EXPECT_NEAR(hum.parameters[0].value, 0.01, 2e-4);
+  EXPECT_NEAR(hum.parameters[1].value, 50, 1e-3);
+  EXPECT_EQ(result.diagnosis.verdict, Verdict::effect_found);
 }
 
 TEST(StickEvidence, AWrongRadiusIsNoCreep) {

@@ -52,6 +52,8 @@ struct RecordNoise {
   SensorNoise sensor;
   double scatter = 0;  ///< standard deviation of the break-away level from cycle to cycle [1 or N]
   FlickerNoise flicker;
+  double line = 0;         ///< frequency of a line that makes most of the noise in stick [Hz]; 0: none was looked for
+  double beside_line = 0;  ///< sensor noise without it [1 or N]
 };
 
 /// Cost: linear in samples, and as much as that of a fit: found once for all models.
