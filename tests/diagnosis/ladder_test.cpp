@@ -107,7 +107,7 @@ CandidateResult passing(const Made& made, std::size_t candidate, double units, s
   CandidateResult out;
   out.candidate = candidate;
   out.trial.p.assign(parameters, 0.0);
-  out.trial.usable = out.passes = out.by_level = true;  // by level: there is no model to fit to more values
+  out.trial.usable = out.passes = out.by_level = true;         // by level: there is no model to fit to more values
   out.trial.squares = made.context.fine.values * made.unit();  // the noise of a row is one unit
   out.trial.held_out_squares = units * made.unit();
   return out;
