@@ -41,7 +41,7 @@ std::vector<double> smoothed(const Observations& o, const std::vector<double>& c
 /// v_r in the middle of the stick before a slip, less its trend. Empty where that is too short.
 std::vector<double> noise_of_stick(const Record& record, const Observations::SlipObservation& slip) {
   const SampleRange& stick = record.segmentation->cycles[slip.segment].stick;
-  const std::size_t part = stick.size() / 6;
+  const auto part = static_cast<std::size_t>(limits::kEndOfStick * static_cast<double>(stick.size()));
   if (!slip.from_stick || part == 0) return {};
   const std::span<const double> v(record.motion->relative_velocity);
   const std::span<const double> middle = v.subspan(stick.begin + part, stick.size() - 2 * part);
