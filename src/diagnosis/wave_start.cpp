@@ -6,18 +6,6 @@
 
 namespace tribofit::diagnosis {
 
-namespace {
-
-double squares_at(const ModelResiduals& residuals, const std::vector<double>& p) {
-  std::vector<double> values(residuals.count());
-  if (!residuals.evaluate(p.data(), values.data(), nullptr)) return std::nan("");
-  double sum = 0;
-  for (const double r : values) sum += r * r;
-  return sum;
-}
-
-}  // namespace
-
 std::vector<double> with_amplitude_and_phase(const ModelResiduals& residuals, const FrictionModel& model,
                                              const EffectInfo& effect, const Bounds& bounds,
                                              std::vector<double> start) {
@@ -41,7 +29,7 @@ std::vector<double> with_amplitude_and_phase(const ModelResiduals& residuals, co
   std::vector<double> better = start;
   better[amplitude] = std::clamp(std::hypot(along, across), bounds.lower[amplitude], bounds.upper[amplitude]);
   better[phase] = std::remainder(start[phase] + std::atan2(across, along), 2 * std::numbers::pi);
-  return squares_at(residuals, better) < squares_at(residuals, start) ? better : start;
+  return residuals.white_squares(better.data()) < residuals.white_squares(start.data()) ? better : start;
 }
 
 }  // namespace tribofit::diagnosis

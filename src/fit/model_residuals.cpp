@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -307,6 +308,11 @@ std::vector<double> ModelResiduals::squares(const double* p) const {
     out.push_back(block.col(0).head(friction_rows(observations_.slips[slips_[k]])).squaredNorm());
   }
   return out;
+}
+
+double ModelResiduals::white_squares(const double* p) const {
+  Eigen::VectorXd rows(static_cast<Eigen::Index>(count()));
+  return evaluate(p, rows.data(), nullptr) ? rows.squaredNorm() : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::vector<ModelResiduals::StickSquares> ModelResiduals::stick_squares(const double* p) const {

@@ -97,6 +97,9 @@ class ModelResiduals final : public Residuals {
   /// finite.
   std::vector<double> squares(const double* p) const;
 
+  /// Sum of squares of all rows at p, whitened. NaN where the model is not finite.
+  double white_squares(const double* p) const;
+
   /// What the rows of stick are worth against a rigid stick.
   struct StickSquares {
     double rigid = 0;  ///< squares of those rows without any creep

@@ -357,12 +357,12 @@ Look look_at(const Looked& at, double from, double shortest = kKinkRest) {
   const bool is_inside = decay > kKinkInside * best.squares, decays = sharp.squares > kKinkExplained * decay;
   if (!is_inside) found.at_restick = std::max(found.at_restick, from);
   found.rise = rise_in_stick(velocity, rest, fastest) / fastest;
-  found.creeps = found.rise > kKinkCreeps * std::max(found.at_restick, kKinkSeen);
+  const bool creeps = found.rise > kKinkCreeps * std::max(found.at_restick, kKinkSeen);
   // A second order goes beyond rest itself, by as much as it fits.
   const bool returns = filter.kind == Response::second_order ||
                        beyond_rest(some) < std::max(kKinkBeyond * found.at_restick * fastest, kKinkNoise * noise);
   found.is_filter =
-      !found.creeps && tau > 0 && found.at_restick > kKinkSeen && sharp.squares > kKinkExplained * best.squares &&
+      !creeps && tau > 0 && found.at_restick > kKinkSeen && sharp.squares > kKinkExplained * best.squares &&
       best.squares < std::pow(kKinkLeft * found.at_restick * fastest, 2) && (is_inside || decays) && returns;
   found.is_second_order = found.is_filter && filter.kind == Response::second_order;
   found.is_first_order = found.is_filter && filter.kind == Response::first_order && is_inside;

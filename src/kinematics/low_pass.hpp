@@ -16,8 +16,7 @@ struct LowPass {
   bool is_filter = false;        ///< it explains what no kink does, and more than alpha's error
   bool is_first_order = false;   ///< a first order explains it best, not a mean
   bool is_second_order = false;  ///< a Butterworth filter of second order does
-  double rise = 0;               ///< of v_r in the middle of a stick, the median over the fastest
-  bool creeps = false;           ///< v_r grows in stick: then it trails off as the contact does
+  double rise = 0;               ///< of v_r in the middle of a stick, the median over the fastest: a contact creeps
   std::vector<double> resticks;  ///< where v_r came to rest [samples], once in every slip
   double corner() const;         ///< [Hz]
 };

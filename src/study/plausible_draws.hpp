@@ -11,9 +11,9 @@ namespace tribofit {
 /// Machines that a record leaves possible.
 ///
 /// The covariance of a fit knows the curvature at its minimum. Where a record hardly fixes an effect (a run-in of w =
-/// -0.09 +- 0.11 over L = 74 +- 160 mm), most of what is drawn with it contradicts the record: half of such draws have
-/// no run-in at all, though without one the record is not described. So a draw whose squares rise by far more than the
-/// covariance promises is taken back towards the minimum.
+/// -0.09 +- 0.11 over L = 74 +- 160 mm), some of what is drawn with it contradicts the record: of six such draws one
+/// has no run-in at all, though without one the record is not described. So a draw whose squares rise by far more than
+/// the covariance promises is taken back towards the minimum.
 class PlausibleDraws {
  public:
   PlausibleDraws() = default;

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "investigations.hpp"
 
@@ -36,56 +38,50 @@ std::string progress_table(const std::vector<const Investigation*>& open, std::s
   return text;
 }
 
-/// How often answers that were called so likely before any further run were the truth.
-std::string answers_table(const std::vector<const Investigation*>& open) {
-  struct Fifth {
+/// What was stated with some probability, and whether it came true.
+using Stated = std::vector<std::pair<double, bool>>;
+
+/// One row for each of so many equal ranges of the probability.
+std::string stated_table(const std::string& header, std::size_t ranges, const Stated& all) {
+  struct Range {
     double n = 0, stated = 0, hits = 0;
   };
-  std::array<Fifth, 5> fifths{};
-  for (const Investigation* one : open) {
-    for (const auto& [probability, is_truth] : one->answers) {
-      Fifth& fifth = fifths[std::min<std::size_t>(4, static_cast<std::size_t>(5 * probability))];
-      fifth.n += 1;
-      fifth.stated += probability;
-      fifth.hits += is_truth ? 1 : 0;
-    }
+  std::vector<Range> found(ranges);
+  for (const auto& [probability, came_true] : all) {
+    Range& own = found[std::min(ranges - 1, static_cast<std::size_t>(static_cast<double>(ranges) * probability))];
+    own.n += 1;
+    own.stated += probability;
+    own.hits += came_true ? 1 : 0;
   }
-  std::string text = "| answer called likely by | answers | mean stated | it was the truth |\n|---|---|---|---|\n";
-  for (std::size_t k = 0; k < fifths.size(); ++k) {
-    const Fifth& f = fifths[k];
-    if (f.n == 0) continue;
-    text += fmt::format("| {} to {} % | {} | {:.0f} % | {} |\n", 20 * k, 20 * (k + 1), static_cast<std::size_t>(f.n),
-                        100 * f.stated / f.n, share_of(f.hits, f.n));
+  std::string text = header;
+  const std::size_t width = 100 / ranges;
+  for (std::size_t k = 0; k < ranges; ++k) {
+    const Range& own = found[k];
+    if (own.n == 0) continue;
+    text += fmt::format("| {} to {} % | {} | {:.0f} % | {} |\n", width * k, width * (k + 1),
+                        static_cast<std::size_t>(own.n), 100 * own.stated / own.n, share_of(own.hits, own.n));
   }
   return text;
 }
 
+/// How often answers that were called so likely before any further run were the truth.
+std::string answers_table(const std::vector<const Investigation*>& open) {
+  Stated all;
+  for (const Investigation* one : open) all.insert(all.end(), one->answers.begin(), one->answers.end());
+  return stated_table("| answer called likely by | answers | mean stated | it was the truth |\n|---|---|---|---|\n", 5,
+                      all);
+}
+
 std::string calibration_table(const std::vector<const Investigation*>& open) {
-  struct Tenth {
-    double n = 0, stated = 0, hits = 0;
-  };
-  std::array<Tenth, 10> tenths{};
+  Stated all;
   for (const Investigation* one : open) {
     for (const auto* arm : {&one->planned, &one->random, &one->tried}) {
       // At random: the first run only, before which the probability was stated.
       const std::size_t count = arm == &one->random ? std::min<std::size_t>(1, arm->size()) : arm->size();
-      for (std::size_t k = 0; k < count; ++k) {
-        const FurtherRun& run = (*arm)[k];
-        Tenth& tenth = tenths[std::min<std::size_t>(9, static_cast<std::size_t>(10 * run.probability))];
-        tenth.n += 1;
-        tenth.stated += run.probability;
-        tenth.hits += run.alone ? 1 : 0;
-      }
+      for (std::size_t k = 0; k < count; ++k) all.emplace_back((*arm)[k].probability, (*arm)[k].alone);
     }
   }
-  std::string text = "| stated | runs | mean stated | named alone |\n|---|---|---|---|\n";
-  for (std::size_t k = 0; k < tenths.size(); ++k) {
-    const Tenth& t = tenths[k];
-    if (t.n == 0) continue;
-    text += fmt::format("| {} to {} % | {} | {:.0f} % | {} |\n", 10 * k, 10 * (k + 1), static_cast<std::size_t>(t.n),
-                        100 * t.stated / t.n, share_of(t.hits, t.n));
-  }
-  return text;
+  return stated_table("| stated | runs | mean stated | named alone |\n|---|---|---|---|\n", 10, all);
 }
 
 }  // namespace

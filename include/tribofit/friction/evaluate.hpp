@@ -258,6 +258,21 @@ T friction_at_rest(const FrictionModel& model, const T* p, const LawValues<T>& l
   return level;
 }
 
+/// Carries every memory through a slip, in place; whether friction is signed then, as that of one which acts in stick.
+template <class T>
+bool remember_all(const FrictionModel& model, const T* p, const LawValues<T>& law, const Slip& slip, const T& at_rest,
+                  std::span<const T> velocity, std::span<T> mu) {
+  bool is_signed = false;
+  for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
+    if constexpr (hooks::Remembers<E, T>) {
+      const auto steady_at = [&](const SlidingState<T>& at) { return steady_friction(model, p, law, at); };
+      remember(effect, q, slip, at_rest, steady_at, velocity, mu);
+      is_signed = hooks::ActsInStick<E>;
+    }
+  });
+  return is_signed;
+}
+
 /// The first value of a slip in every channel.
 inline Slip first_value_of(const Slip& slip) {
   Slip first = slip;
@@ -280,14 +295,8 @@ T friction_after_creep(const FrictionModel& model, const T* p, const LawValues<T
   const T velocity = T(last.velocity[0] + 0.0 * p[0]);
   T mu;
   steady_friction(model, p, law, last, std::span<const T>(&velocity, 1), std::span<T>(&mu, 1));
-  bool is_signed = false;
-  for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
-    if constexpr (hooks::Remembers<E, T>) {
-      const auto steady_at = [&](const SlidingState<T>& at) { return steady_friction(model, p, law, at); };
-      remember(effect, q, last, mu, steady_at, std::span<const T>(&velocity, 1), std::span<T>(&mu, 1));
-      is_signed = hooks::ActsInStick<E>;
-    }
-  });
+  const bool is_signed =
+      remember_all(model, p, law, last, T(mu), std::span<const T>(&velocity, 1), std::span<T>(&mu, 1));
   return is_signed ? mu : T(slip.direction * mu);
 }
 
@@ -347,17 +356,9 @@ void evaluate(const FrictionModel& model, const T* p, const Slip& slip, std::spa
   const LawValues<T> law = law_for(model, p, slip);
   const std::size_t n = slip.size();
   steady_friction(model, p, law, slip, velocity, mu);
-  bool is_signed = false;
-  if (model.state_count() > 0 && n > 0) {
-    const T at_rest = detail::friction_at_rest(model, p, law, slip);
-    for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
-      if constexpr (hooks::Remembers<E, T>) {
-        const auto steady_at = [&](const SlidingState<T>& at) { return steady_friction(model, p, law, at); };
-        detail::remember(effect, q, slip, at_rest, steady_at, velocity, mu);
-        is_signed = hooks::ActsInStick<E>;
-      }
-    });
-  }
+  const bool is_signed =
+      model.state_count() > 0 && n > 0 &&
+      detail::remember_all(model, p, law, slip, detail::friction_at_rest(model, p, law, slip), velocity, mu);
   if (!is_signed && slip.direction < 0) {
     for (std::size_t i = 0; i < n; ++i) mu[i] = T(-mu[i]);
   }
