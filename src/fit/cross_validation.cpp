@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "limits.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 
@@ -61,7 +62,8 @@ void set_squares_of_fold(const FitContext& context, const std::vector<std::size_
     return;
   }
   const FullRecord record(context.records, observations, context.model.needs());
-  const std::vector<double> exact = sample_errors(context.model, q, record, observations).squares;
+  const FrictionModel own(context.model);  // its formulas must not be shared between threads
+  const std::vector<double> exact = sample_errors(own, q, record, observations).squares;
   for (const std::size_t s : held) {
     const std::size_t cycle = observations.slips[s].cycle;
     fit.cycle_squares[cycle] = exact[cycle];
@@ -115,7 +117,7 @@ void cross_validate(const FitContext& context, const Solution& solution, const N
   fit.cycle_squares = errors.squares;
   fit.fold_parameters.assign(folds, p);
   fit.cycle_folds = blocks_of(observations, folds);
-  for (std::size_t fold = 0; fold < folds; ++fold) {
+  run_tasks(folds, context.evaluation.threads, [&](std::size_t fold) {
     std::vector<std::size_t> held, kept;
     for (const std::size_t s : all_slips(observations)) {
       (fit.cycle_folds[observations.slips[s].cycle] == fold ? held : kept).push_back(s);
@@ -126,7 +128,7 @@ void cross_validate(const FitContext& context, const Solution& solution, const N
     if (is_long && !context.by_extremes())
       q = context.is_look() ? shortened_step(context, kept, p, free, step) : context.solve(kept, p, quick_search()).p;
     set_squares_of_fold(context, held, p, q, fit);
-  }
+  });
   const double squares = std::accumulate(fit.cycle_squares.begin(), fit.cycle_squares.end(), 0.0);
   const double counts = std::accumulate(fit.cycle_counts.begin(), fit.cycle_counts.end(), 0.0);
   fit.error.held_out_rmse = std::sqrt(std::max(0.0, squares) / counts);

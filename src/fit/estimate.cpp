@@ -45,7 +45,7 @@ void add_starts_at_lines(const FitContext& context, std::vector<std::vector<doub
     const bool has_phase = phase_of_line != parameters.end();
     const SpectralLines lines =
         strongest_lines(context.records[0], context.observations, about_mean_curve(context.observations),
-                        context.bounds.lower[k], context.bounds.upper[k]);
+                        context.bounds.lower[k], context.bounds.upper[k], context.evaluation.threads);
     for (const double frequency : lines.frequencies) {
       for (int phase = 0; phase < (has_phase ? kPhases : 1); ++phase) {
         std::vector<double> start = start_from_data(context.model, context.observations, context.bounds);

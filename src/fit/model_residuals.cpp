@@ -10,7 +10,6 @@
 #include "statistics/linear_algebra.hpp"
 #include "stick_evidence.hpp"
 #include "tribofit/friction/creep.hpp"
-#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/stop.hpp"
 
 namespace tribofit {
@@ -154,19 +153,13 @@ bool ModelResiduals::fill(std::size_t k, const double* p, std::size_t derivative
 bool ModelResiduals::compressed(const double* p, bool with_jacobian, std::vector<Block>& blocks,
                                 const FurtherColumns& further) const {
   blocks.resize(slips_.size());
-  const std::size_t count = parts();
-  if (count == 1) return compress(0, slips_.size(), p, with_jacobian, blocks, further);
-  std::vector<unsigned char> finite(count);
-  run_tasks(count, options_.threads, [&](std::size_t part) {
-    const ModelResiduals own(*this);  // its formulas must not be shared between threads
-    const std::size_t begin = part * slips_.size() / count, end = (part + 1) * slips_.size() / count;
-    finite[part] = own.compress(begin, end, p, with_jacobian, blocks, further) ? 1 : 0;
+  return in_parts([&](const ModelResiduals& own, std::size_t begin, std::size_t end) {
+    return own.compress(begin, end, p, with_jacobian, blocks, further);
   });
-  return std::find(finite.begin(), finite.end(), 0) == finite.end();
 }
 
 std::size_t ModelResiduals::parts() const {
-  constexpr std::size_t kWorthAThread = 10000;  // values: about a millisecond of work, many times what a thread costs
+  constexpr std::size_t kWorthAThread = 2000;  // values: a fraction of a millisecond, a few times what a thread costs
   if (options_.threads == 1) return 1;
   std::size_t values = 0;
   for (const std::size_t k : slips_) values += observations_.slips[k].end - observations_.slips[k].begin;

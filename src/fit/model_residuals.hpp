@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -9,6 +10,7 @@
 #include "dual.hpp"
 #include "tribofit/fit/fit.hpp"
 #include "tribofit/fit/solver.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 
@@ -164,6 +166,9 @@ class ModelResiduals final : public Residuals {
                 const FurtherColumns& further) const;
   /// Into how many parts the slips are best split.
   std::size_t parts() const;
+  /// work(residuals, begin, end) for each part of the slips, side by side; false where it is for one of them.
+  template <class Work>
+  bool in_parts(Work&& work) const;
   /// What noise that raises all of a slip alike does to its rows of friction.
   Eigen::VectorXd level_column(const Observations::SlipObservation& range) const;
   /// Takes out of the rows of a slip what that noise is expected to do.
@@ -180,5 +185,17 @@ class ModelResiduals final : public Residuals {
   std::size_t first_part_ = 0;            ///< of a stick, from which the model's creep holds
   std::vector<Eigen::MatrixXd> weights_;  ///< of the parts of a stick, for each record
 };
+
+template <class Work>
+bool ModelResiduals::in_parts(Work&& work) const {
+  const std::size_t count = parts();
+  if (count == 1) return work(*this, std::size_t{0}, slips_.size());
+  std::vector<unsigned char> done(count);
+  run_tasks(count, options_.threads, [&](std::size_t part) {
+    const ModelResiduals own(*this);  // its formulas must not be shared between threads
+    done[part] = work(own, part * slips_.size() / count, (part + 1) * slips_.size() / count) ? 1 : 0;
+  });
+  return std::find(done.begin(), done.end(), 0) == done.end();
+}
 
 }  // namespace tribofit

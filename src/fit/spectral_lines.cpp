@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "limits.hpp"
+#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/spectrum.hpp"
-#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit {
 
@@ -149,7 +149,7 @@ std::vector<double> take_peaks(Spectrum spectrum, double lowest, double highest)
 }  // namespace
 
 SpectralLines strongest_lines(const Record& record, const Observations& observations, std::span<const double> residual,
-                              double lowest, double highest) {
+                              double lowest, double highest, int threads) {
   SpectralLines lines;
   const Motion& motion = *record.motion;
   const double rate = observation_rate(observations);
@@ -171,12 +171,11 @@ SpectralLines strongest_lines(const Record& record, const Observations& observat
   const double width = kBesidePeak / length, fine = kFinerThanBin / motion.duration();
   std::vector<std::pair<double, double>> found;  // strength and frequency
   for (const double coarse : take_peaks(amplitude_spectrum(series, 1 / rate), lowest, highest)) {
-    std::pair<double, double> best = {-1, coarse};
-    for (double f = coarse - width; f <= coarse + width; f += fine) {
-      stop_point();
-      best = std::max(best, {strength(observations, residual, f), f});
-    }
-    found.push_back(best);
+    std::vector<std::pair<double, double>> tried;
+    for (double f = coarse - width; f <= coarse + width; f += fine) tried.push_back({0, f});
+    run_tasks(tried.size(), threads,
+              [&](std::size_t k) { tried[k].first = strength(observations, residual, tried[k].second); });
+    found.push_back(tried.empty() ? std::pair{-1.0, coarse} : *std::max_element(tried.begin(), tried.end()));
   }
   std::sort(found.rbegin(), found.rend());
   for (const auto& [strength, frequency] : found) lines.frequencies.push_back(frequency);

@@ -19,7 +19,7 @@ struct SpectralLines {
 /// frequency is found more finely than the record resolves, between `lowest` and `highest` [Hz]. residual: one value
 /// for each of the observations, signed. Only the first record is looked at.
 SpectralLines strongest_lines(const Record& record, const Observations& observations, std::span<const double> residual,
-                              double lowest, double highest);
+                              double lowest, double highest, int threads = 1);
 
 /// The strongest line that runs through the sticks, where it is most of the noise there.
 struct LineInStick {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <vector>
 
 #include "limits.hpp"
@@ -121,20 +122,26 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
   const bool breaks_away =
       std::any_of(slips_.begin(), slips_.end(), [this](std::size_t s) { return observations_.slips[s].from_stick; });
   if (!breaks_away) return out;
+  std::vector<Products> all(slips_.size());
+  const bool finite = in_parts([&](const ModelResiduals& own, std::size_t begin, std::size_t end) {
+    Workspace workspace;
+    Block block;
+    for (std::size_t k = begin; k < end; ++k) {
+      if (!own.fill(k, p, 1, workspace, block, true)) return false;
+      const auto& range = observations_.slips[slips_[k]];
+      const Eigen::Index rows = friction_rows(range);
+      Eigen::VectorXd& g = out.g[slips_[k]];
+      g = block.col(0).head(rows);
+      const Eigen::VectorXd u = level_column(range), r = block.col(1).head(rows);
+      all[k] = {
+          slips_[k],      static_cast<double>(rows), g.squaredNorm(), g.dot(u), u.squaredNorm(), g.dot(r), u.dot(r),
+          r.squaredNorm()};
+    }
+    return true;
+  });
+  if (!finite) return out;
   std::vector<Products> slips;
-  Workspace workspace;
-  Block block;
-  for (std::size_t k = 0; k < slips_.size(); ++k) {
-    if (!fill(k, p, 1, workspace, block, true)) return out;
-    const auto& range = observations_.slips[slips_[k]];
-    const Eigen::Index rows = friction_rows(range);
-    Eigen::VectorXd& g = out.g[slips_[k]];
-    g = block.col(0).head(rows);
-    if (!(g.squaredNorm() > 0)) continue;
-    const Eigen::VectorXd u = level_column(range), r = block.col(1).head(rows);
-    slips.push_back({slips_[k], static_cast<double>(rows), g.squaredNorm(), g.dot(u), u.squaredNorm(), g.dot(r),
-                     u.dot(r), r.squaredNorm()});
-  }
+  std::copy_if(all.begin(), all.end(), std::back_inserter(slips), [](const Products& slip) { return slip.gg > 0; });
   out.slow = slow_noise_of_slips(slips, observations_);
   for (Products& slip : slips) slip = slip.whitened(out.slow);
   whiten_break_away(slips, observations_, out);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -10,6 +11,7 @@
 #include "limits.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
@@ -17,8 +19,9 @@ namespace {
 
 class Clock {
  public:
-  explicit Clock(FileRecord& recording)
+  Clock(FileRecord& recording, int threads)
       : recording_(recording),
+        threads_(threads),
         time_(recording[Channel::time]),
         step_(recording[Channel::step]),
         interval_(typical_interval(time_)),
@@ -32,8 +35,9 @@ class Clock {
     begin_step(0, true);
     double shift = -time_.front(), last = time_.front();
     double step_start = last;
+    std::size_t i = shift_plain_rows(shift, last);
     time_.front() = 0;
-    for (std::size_t i = shift_plain_rows(shift, last); i < time_.size(); ++i) {
+    for (; i < time_.size(); ++i) {
       const double now = time_[i], interval = now - last;
       const bool step_changes = begins_step(i);
       if (interval > 0 && (interval <= kGapInterval * interval_ || any_rate_) && !step_changes) [[likely]] {
@@ -61,27 +65,27 @@ class Clock {
   }
 
  private:
-  /// Takes the start of the clock off the first rows, block by block, as long as there is nothing else to say of them.
-  /// Returns the first row that is left; last: the clock of the row before it, as read. Most files are plain to their
-  /// end, and this takes half the time that it takes row by row.
+  /// Takes the start of the clock off the first rows, as long as there is nothing else to say of them. Returns the
+  /// first row that is left; last: the clock of the row before it, as read. Most files are plain to their end.
   std::size_t shift_plain_rows(double shift, double& last) {
     if (!step_.empty() || !recording_.stated_steps.empty()) return 1;
     const double longest = any_rate_ ? std::numeric_limits<double>::infinity() : kGapInterval * interval_;
-    constexpr std::size_t kBlock = 4096;
-    for (std::size_t begin = 1; begin < time_.size(); begin += kBlock) {
-      const std::size_t end = std::min(time_.size(), begin + kBlock);
-      double before = last;
-      std::size_t plain = 0;
-      for (std::size_t i = begin; i < end; ++i) {
-        const double now = time_[i], interval = now - before;
-        plain += interval > 0 && interval <= longest && now + shift > before + shift ? 1U : 0U;
-        before = now;
+    std::atomic<std::size_t> plain = time_.size();  // rows before the first part with more to say
+    run_over_parts(time_.size(), threads_, [&](std::size_t begin, std::size_t end) {
+      std::size_t count = begin == 0 ? 1 : 0;
+      for (std::size_t i = std::max<std::size_t>(1, begin); i < end; ++i) {
+        const double interval = time_[i] - time_[i - 1];
+        count += interval > 0 && interval <= longest && time_[i] + shift > time_[i - 1] + shift ? 1U : 0U;
       }
-      if (plain < end - begin) return begin;
-      last = before;
+      if (count == end - begin) return;
+      for (std::size_t least = plain; begin < least && !plain.compare_exchange_weak(least, begin);) continue;
+    });
+    if (plain == 0) return 1;
+    last = time_[plain - 1];
+    run_over_parts(plain, threads_, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) time_[i] += shift;
-    }
-    return time_.size();
+    });
+    return plain;
   }
 
   /// Whether the file says that a step begins here.
@@ -188,6 +192,7 @@ class Clock {
   }
 
   FileRecord& recording_;
+  int threads_;
   std::vector<double>& time_;
   std::vector<double>& step_;
   double interval_;
@@ -250,7 +255,7 @@ void set_time(FileRecord& recording, const Sampling& sampling) {
   recording.notes.push_back("time from " + sampling.source);
 }
 
-void set_clock(FileRecord& recording, const std::optional<Sampling>& sampling) {
+void set_clock(FileRecord& recording, const std::optional<Sampling>& sampling, int threads) {
   if (sampling && sampling->by_user) {
     const double found = 1 / typical_interval(recording[Channel::time]);
     if (std::abs(found / sampling->rate - 1) > kSameRate) {
@@ -258,7 +263,7 @@ void set_clock(FileRecord& recording, const std::optional<Sampling>& sampling) {
           fmt::format("the stated rate of {:g} Hz was not used: the time column says {:g} Hz", sampling->rate, found));
     }
   }
-  Clock(recording).run();
+  Clock(recording, threads).run();
   if (!(recording.size() > 1)) {
     throw InputError("has one row only", "a trace needs at least two samples", {recording.path, 0, ""});
   }

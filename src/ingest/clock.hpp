@@ -33,7 +33,7 @@ void set_time(FileRecord& recording, const Sampling& sampling);
 ///   may be taken across it; a warning names it. It belongs to the same step of the recipe.
 /// Throws InputError where time goes backwards or repeats otherwise, and where more than one interval in a
 /// thousand (and more than 20) is a gap: such a clock is not one of samples.
-void set_clock(FileRecord& recording, const std::optional<Sampling>& sampling);
+void set_clock(FileRecord& recording, const std::optional<Sampling>& sampling, int threads);
 
 /// The median of up to 4096 evenly spread intervals [s]; 0 for fewer than two times.
 double typical_interval(const std::vector<double>& time);

@@ -126,10 +126,12 @@ void refuse_unusable(const RawTable& table, const Column& column, std::size_t ro
   }
 }
 
-void to_si(const Column& column, std::vector<double>& values) {
-  const double factor = column.factor, offset = column.offset;  // which the values cannot alias
-  if (factor == 1 && offset == 0) return;
-  for (double& value : values) value = factor * value + offset;
+void to_si(const Column& column, std::vector<double>& values, int threads) {
+  if (column.factor == 1 && column.offset == 0) return;
+  run_over_parts(values.size(), threads, [&](std::size_t begin, std::size_t end) {
+    const double factor = column.factor, offset = column.offset;  // which the values cannot alias
+    for (std::size_t i = begin; i < end; ++i) values[i] = factor * values[i] + offset;
+  });
 }
 
 /// Whether rows, in SI, are points: by statement, or because they have no times, or none that a clock made.
@@ -219,7 +221,7 @@ void recognise_steps(FileRecord& recording) {
 }
 
 /// The channels of one set of rows, in SI, on a clock that starts at 0; points are numbered instead.
-FileRecord take_rows(RawTable& table, RowsPlan plan, const FileRecord& file) {
+FileRecord take_rows(RawTable& table, RowsPlan plan, const FileRecord& file, int threads) {
   FileRecord recording;
   recording.path = file.path;
   recording.column_names = file.column_names;
@@ -239,7 +241,7 @@ FileRecord take_rows(RawTable& table, RowsPlan plan, const FileRecord& file) {
     const bool again = std::any_of(used.begin() + static_cast<std::ptrdiff_t>(k) + 1, used.end(),
                                    [&](const Column& c) { return c.index == used[k].index; });
     recording[used[k].channel] = again ? values : std::move(values);
-    to_si(used[k], recording[used[k].channel]);
+    to_si(used[k], recording[used[k].channel], threads);
   }
   if (rows == 0) throw InputError("holds no values", "check that the export was complete", {file.path, 0, ""});
   recognise_points(plan, recording);
@@ -251,7 +253,7 @@ FileRecord take_rows(RawTable& table, RowsPlan plan, const FileRecord& file) {
     set_points(recording);
     return recording;
   }
-  set_clock(recording, plan.sampling);
+  set_clock(recording, plan.sampling, threads);
   return recording;
 }
 
@@ -281,7 +283,7 @@ FileRecord read_recording(RawTable table, const std::string& path, const ReadOpt
   load_columns(table, file.columns.used, options.threads);
   take_messages(table, file);
   std::vector<FileRecord> parts;
-  for (RowsPlan& plan : plans) parts.push_back(take_rows(table, std::move(plan), file));
+  for (RowsPlan& plan : plans) parts.push_back(take_rows(table, std::move(plan), file, options.threads));
   const auto with_friction =
       std::find_if(parts.begin(), parts.end(), [](const FileRecord& part) { return part.has_friction(); });
   if (with_friction != parts.end()) std::iter_swap(parts.begin(), with_friction);

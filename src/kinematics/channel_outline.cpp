@@ -1,6 +1,7 @@
 #include "channel_outline.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "limits.hpp"
 #include "resolution.hpp"
@@ -27,26 +28,21 @@ ChannelOutline::ChannelOutline(std::span<const double> samples) : x(samples) {
   for (Chunks* summary : {&values, &changes}) summary->part.reserve(chunks);
   repeats.reserve(chunks);
   values.whole = {x[0], x[0]};
-  double before = 0;  // the change that led to the sample
+  std::array<double, Chunks::length + 1> change{};  // the first is the last of the chunk before
   for (std::size_t begin = 0; begin < x.size(); begin += Chunks::length) {
     const std::size_t end = std::min(x.size(), begin + Chunks::length), changed = std::min(end, x.size() - 1);
     values.part.push_back(extremes(x.subspan(begin, end - begin)));
     widen(values.whole, values.part.back());
     if (begin == changed) break;
-    const double first = x[begin + 1] - x[begin];
-    Extremes change{first, first};
+    const std::size_t n = changed - begin;
+    for (std::size_t k = 0; k < n; ++k) change[k + 1] = x[begin + k + 1] - x[begin + k];
     std::size_t equal = 0, turned = 0;
-    for (std::size_t i = begin; i < changed; ++i) {
-      const double d = x[i + 1] - x[i];
-      change.low = d < change.low ? d : change.low;
-      change.high = d > change.high ? d : change.high;
-      equal += d == 0 ? 1U : 0U;
-      turned += before * d < 0 ? 1U : 0U;
-      before = d;
-    }
-    changes.part.push_back(change);
-    if (begin == 0) changes.whole = change;
-    widen(changes.whole, change);
+    for (std::size_t k = 1; k <= n; ++k) equal += change[k] == 0 ? 1U : 0U;
+    for (std::size_t k = 1; k <= n; ++k) turned += change[k - 1] * change[k] < 0 ? 1U : 0U;
+    changes.part.push_back(extremes(std::span<const double>(change).subspan(1, n)));
+    if (begin == 0) changes.whole = changes.part.back();
+    widen(changes.whole, changes.part.back());
+    change.front() = change[n];
     repeats.push_back(static_cast<std::uint16_t>(equal));
     turns += turned;
   }

@@ -189,12 +189,12 @@ inline constexpr double kKinkRest = 1.5, kKinkRestShort = 0.5;
 /// Slope of v_r when it comes to rest, over its mean one in the look: a spring brakes it most at the end, a mean over
 /// more than the look makes a parabola of it.
 inline constexpr double kKinkSteep = 0.6;
-/// Squares that a decay from where the look begins leaves over those of a filter: fewer, and re-stick was before.
+/// Squares that a decay from where the look begins leaves over those of a filter; fewer: re-stick was before.
 inline constexpr double kKinkInside = 30;
-/// Samples in which it falls: fewer show no kink, of more every other will do. Slips.
-inline constexpr std::size_t kKinkSamples = 5, kKinkMost = 40, kKinkSlips = 12;
-/// Time constants tried [samples], each so many times the one before.
-inline constexpr double kKinkFirst = 0.15, kKinkNext = 1.35;
+/// Samples in which it falls: fewer show no kink, of more every other will do. Slips; those of a first look.
+inline constexpr std::size_t kKinkSamples = 5, kKinkMost = 40, kKinkSlips = 12, kKinkFew = 4;
+/// Time constants [samples], each so many times the one before; what the first look may leave, over the least.
+inline constexpr double kKinkFirst = 0.15, kKinkNext = 1.35, kKinkRival = 4;
 /// Standard uncertainty of a time constant, over it, for the cubic that stands for v_r before re-stick (off by 2 %
 /// either way in simulated records) and where it is of the tail alone; from when on, how long that is [times it].
 inline constexpr double kKinkModel = 0.01, kDecayModel = 5e-4, kDecayAfter = 0.5, kDecayLasts = 3;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "limits.hpp"
+#include "resticks.hpp"
 #include "statistics/golden_section.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/statistics/parallel.hpp"
@@ -17,15 +18,6 @@
 
 namespace tribofit::kinematics {
 namespace {
-
-/// v_r about one re-stick, every `stride`-th sample.
-struct Restick {
-  std::vector<double> velocity;
-  double squares = 0;                 ///< sum of its squares
-  double fall = 0;                    ///< samples in which it falls from the highest to nothing
-  double at = 0;                      ///< where it does, roughly [samples]
-  std::size_t begin = 0, stride = 1;  ///< of these samples in the record
-};
 
 struct Smallest {
   double squares = std::numeric_limits<double>::infinity(), slope = 0;
@@ -115,60 +107,6 @@ Smallest fit(const Restick& restick, const Filter& filter) {
   return best;
 }
 
-/// shortest: rest after them that they must have, over the fall.
-std::vector<Restick> resticks(std::span<const double> v, double rest, double fastest, double from, double shortest) {
-  const double high = from * fastest, low = kKinkDown * fastest;
-  std::vector<Restick> all;
-  for (std::size_t i = 0; i < v.size();) {
-    while (i < v.size() && std::abs(v[i] - rest) < kKinkSlip * fastest) ++i;
-    if (i == v.size()) break;
-    const double sign = v[i] > rest ? 1 : -1;
-    const auto reads = [&](std::size_t k) { return sign * (v[k] - rest); };
-    while (i < v.size() && reads(i) >= high) ++i;
-    const std::size_t begin = i - 1;
-    std::size_t down = begin;
-    while (down < v.size() && reads(down) > low) ++down;
-    i = down;
-    const std::size_t fall = down - begin;
-    std::size_t end = down;
-    while (end < std::min(v.size(), down + 6 * fall) && reads(end) < low) ++end;
-    // A short stick ends before the velocity has grown to where it began to rest.
-    end = std::min(down + 2 * fall, down + (end - down) / 3);
-    if (fall < kKinkSamples || static_cast<double>(end - down) < shortest * static_cast<double>(fall) ||
-        end + 1 >= v.size())
-      continue;
-    const std::size_t stride = std::max<std::size_t>(1, fall / kKinkMost);
-    Restick restick;
-    restick.begin = begin, restick.stride = stride;
-    std::vector<double> after;
-    for (std::size_t k = end - std::max<std::size_t>(2, (end - down) / 4); k < end; ++k) after.push_back(reads(k));
-    const double level = median(std::move(after));
-    for (std::size_t k = begin; k < end; k += stride) restick.velocity.push_back(reads(k) - level);
-    for (const double y : restick.velocity) restick.squares += y * y;
-    restick.fall = static_cast<double>(fall) / static_cast<double>(stride);
-    restick.at = restick.fall;
-    all.push_back(std::move(restick));
-  }
-  return all;
-}
-
-/// How much v_r rises from before the middle of a stick to after it, the median over sticks [m/s]: behind a filter a
-/// block at rest stays at rest, a contact that spins creeps as friction grows.
-double rise_in_stick(std::span<const double> v, double rest, double fastest) {
-  std::vector<double> rises;
-  for (std::size_t i = 0; i < v.size();) {
-    while (i < v.size() && std::abs(v[i] - rest) >= kKinkSlip * fastest) ++i;
-    const std::size_t begin = i;
-    while (i < v.size() && std::abs(v[i] - rest) < kKinkSlip * fastest) ++i;
-    const std::size_t eighth = (i - begin) / 8;
-    if (begin == 0 || i == v.size() || eighth == 0) continue;
-    double rise = 0;
-    for (std::size_t k = begin + 2 * eighth; k < begin + 3 * eighth; ++k) rise += v[k + 3 * eighth] - v[k];
-    rises.push_back((v[i] > rest ? rise : -rise) / static_cast<double>(eighth));
-  }
-  return rises.empty() ? 0 : median(std::move(rises));
-}
-
 /// Cuts of a search for a time constant between its neighbours in the list of those tried: to a thousandth.
 constexpr int kCuts = 16;
 
@@ -195,23 +133,6 @@ double left_by_decay(const std::vector<Restick>& some) {
   }
   const auto left = [&](double t) { return left_by_decay(some, t); };
   return golden_section(left, best / kKinkNext, best * kKinkNext, kCuts).value;
-}
-
-/// Every one of which a few dozen are left.
-std::vector<Restick> some_of(const std::vector<Restick>& all) {
-  std::vector<Restick> some;
-  const std::size_t stride = std::max<std::size_t>(1, all.size() / kKinkSlips);
-  for (std::size_t k = 0; k < all.size(); k += stride) some.push_back(all[k]);
-  return some;
-}
-
-/// How far v_r goes beyond rest after re-stick.
-double beyond_rest(const std::vector<Restick>& some) {
-  std::vector<double> beyond;
-  for (const Restick& restick : some) {
-    beyond.push_back(-*std::min_element(restick.velocity.begin(), restick.velocity.end()));
-  }
-  return median(std::move(beyond));
 }
 
 /// Over re-sticks.
@@ -308,6 +229,19 @@ std::vector<Filter> filters_for(double fall) {
   return filters;
 }
 
+/// Those that may be the best: most leave far more, which few re-sticks show.
+std::vector<Filter> filters_worth(const std::vector<Restick>& some, const std::vector<Filter>& all, int threads) {
+  const std::vector<Restick> few = some_of(some, kKinkFew);
+  std::vector<double> left(all.size());
+  run_tasks(all.size(), threads, [&](std::size_t k) { left[k] = usual(few, all[k]).squares; });
+  const double least = left.empty() ? 0 : *std::min_element(left.begin(), left.end());
+  std::vector<Filter> worth;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (left[k] <= kKinkRival * least) worth.push_back(all[k]);
+  }
+  return worth;
+}
+
 /// Velocity about which re-sticks are looked at, and what is known of it.
 struct Looked {
   std::span<const double> velocity;
@@ -330,7 +264,8 @@ Look look_at(const Looked& at, double from, double shortest = kKinkRest) {
   const auto& [velocity, rest, noise, step, fastest, threads] = at;
   Look look;
   LowPass& found = look.found;
-  const std::vector<Restick> all = resticks(velocity, rest, fastest, from, shortest), some = some_of(all);
+  const std::vector<Restick> all = find_resticks(velocity, rest, fastest, from, shortest),
+                             some = some_of(all, kKinkSlips);
   if (some.size() < kFewestPeriods) return look;
   found.slips = some.size();
   std::vector<double> falls;
@@ -339,7 +274,7 @@ Look look_at(const Looked& at, double from, double shortest = kKinkRest) {
   const Smallest sharp = usual(some, {});
   Smallest best = sharp;
   Filter filter;
-  const std::vector<Filter> filters = filters_for(most);
+  const std::vector<Filter> filters = filters_worth(some, filters_for(most), threads);
   std::vector<Smallest> behind(filters.size());
   run_tasks(filters.size(), threads, [&](std::size_t k) { behind[k] = usual(some, filters[k]); });
   for (std::size_t k = 0; k < filters.size(); ++k) {

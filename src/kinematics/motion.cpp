@@ -203,7 +203,7 @@ void MotionStages::make_relative_motion() {
   run_up_ = run_up();
   const std::size_t head = std::max(lost_.head, options_.trim ? run_up_ : 0);
   if (undoes_ripple_) kinematics::impose_ripple(trace_, disc_, ripple_, kinematics::steady_speed(trace_));
-  if (is_block()) kinematics::make_relative(trace_.velocity, disc_);
+  if (is_block()) kinematics::make_relative(trace_.velocity, disc_, threads_);
   const std::pair<std::vector<double>*, std::vector<double>*> channels[] = {
       {&trace_.time, &motion_.time},
       {&trace_.friction, &motion_.friction},

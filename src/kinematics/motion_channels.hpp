@@ -11,6 +11,7 @@
 #include "tribofit/ingest/instruments.hpp"
 #include "tribofit/ingest/trace.hpp"
 #include "tribofit/kinematics/motion.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 // What becomes of the channels of a trace when they become those of a motion.
 
@@ -76,13 +77,15 @@ inline std::vector<Step> steps_within(const std::vector<Step>& steps, std::size_
 }
 
 /// v_r in the place of v_b.
-inline void make_relative(std::vector<double>& velocity, const Disc& disc) {
-  if (disc.varying.empty()) {
+inline void make_relative(std::vector<double>& velocity, const Disc& disc, int threads) {
+  run_over_parts(velocity.size(), threads, [&](std::size_t begin, std::size_t end) {
     const double constant = disc.constant;
-    for (double& v : velocity) v = constant - v;
-  } else {
-    for (std::size_t i = 0; i < velocity.size(); ++i) velocity[i] = disc.varying[i] - velocity[i];
-  }
+    if (disc.varying.empty()) {
+      for (std::size_t i = begin; i < end; ++i) velocity[i] = constant - velocity[i];
+    } else {
+      for (std::size_t i = begin; i < end; ++i) velocity[i] = disc.varying[i] - velocity[i];
+    }
+  });
 }
 
 }  // namespace tribofit::kinematics

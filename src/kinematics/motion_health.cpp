@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <utility>
 
 #include "limits.hpp"
@@ -9,6 +11,7 @@
 #include "plateau_ratio.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/kinematics/health_names.hpp"
+#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 // The stages of a motion that say what its channels are worth.
@@ -44,19 +47,21 @@ std::optional<LevelRange> MotionStages::plateau_as_recorded() const {
 }
 
 void MotionStages::check_health() {
-  motion_.health = {
-      std::move(clipping_),
-      std::move(drop_outs_),
-      kinematics::check_sagging(sag_, declared_high_pass_, motion_.high_pass > 0, search_.sticks),
-      check_band(),
-      check_delay(),
-      kinematics::check_revolutions(motion_),
-      kinematics::check_speed_ripple(motion_, ripple_),
-      kinematics::check_run_up(motion_, options_.trim, run_up_),
-      check_level(),
-      kinematics::check_resolution(steps_, motion_.friction_kind, search_.noise),
-      kinematics::check_friction_zero(motion_),
+  motion_.health = {std::move(clipping_), std::move(drop_outs_)};
+  const std::function<HealthItem()> checks[] = {
+      [&] { return kinematics::check_sagging(sag_, declared_high_pass_, motion_.high_pass > 0, search_.sticks); },
+      [&] { return check_band(); },
+      [&] { return check_delay(); },
+      [&] { return kinematics::check_revolutions(motion_); },
+      [&] { return kinematics::check_speed_ripple(motion_, ripple_); },
+      [&] { return kinematics::check_run_up(motion_, options_.trim, run_up_); },
+      [&] { return check_level(); },
+      [&] { return kinematics::check_resolution(steps_, motion_.friction_kind, search_.noise); },
+      [&] { return kinematics::check_friction_zero(motion_); },
   };
+  std::vector<HealthItem> found(std::size(checks));
+  run_tasks(found.size(), threads_, [&](std::size_t k) { found[k] = checks[k](); });
+  for (HealthItem& item : found) motion_.health.push_back(std::move(item));
 }
 
 HealthItem MotionStages::check_band() const {

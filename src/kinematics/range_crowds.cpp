@@ -141,6 +141,9 @@ std::array<PileUp, 2> find_crowds(const Values& values) {
 std::vector<SampleSpan> runs_within(const Values& values, double from, double to, std::size_t least) {
   std::vector<SampleSpan> runs;
   for (std::size_t i = 0; i < values.size(); ++i) {
+    const Extremes& chunk = values.chunks.part[i / Chunks::length];
+    if (chunk.high < from || chunk.low > to) i = (i / Chunks::length + 1) * Chunks::length;  // nothing of it
+    if (i >= values.size()) break;
     if (values[i] < from || values[i] > to) continue;
     const std::size_t begin = i;
     while (i < values.size() && values[i] >= from && values[i] <= to) ++i;

@@ -185,7 +185,7 @@ Report report_of(const Identification& result, const ReportOptions& options) {
   const std::vector<const Fit*> models = drawn_models(result.fits, result.best, kDrawnModels, beside);
   const std::vector<const Fit*> curves = drawn_curves(models, result.fits);
   TraceSections sections;
-  const DrawnTrace drawn(result, models, curves, "t1");
+  const DrawnTrace drawn(result, models, curves, "t1", 1, 0, options.threads);
   sections.add_models(drawn);
   if (!options.leave_out_cycles) sections.add_cycles(drawn);
   sections.trace.add(health_table({&result, 1}));

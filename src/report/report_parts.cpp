@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <iterator>
 #include <set>
 #include <utility>
 
 #include "numbers.hpp"
 #include "report/pictures/text.hpp"
+#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/version.hpp"
 
 namespace tribofit {
@@ -91,12 +94,16 @@ void TraceSections::add_models(const DrawnTrace& drawn) {
     errors.add(error_charts(drawn));
     return;
   }
-  std::vector<Chart> windows = cycle_charts(drawn);
   if (drawn.trace.motion.size() < 2) return;
+  std::vector<Chart> windows, of_errors;
+  Chart of_law;  // it alone evaluates models, whose formulas must not be shared between threads
+  const std::function<void()> draw[] = {[&] { of_law = law_chart(drawn); }, [&] { of_errors = error_charts(drawn); },
+                                        [&] { windows = cycle_charts(drawn); }};
+  run_tasks(std::size(draw), drawn.threads, [&](std::size_t k) { draw[k](); });
   if (windows.empty()) windows.push_back(record_chart(drawn));
   trace.add(std::move(windows));
-  law.add(law_chart(drawn));
-  errors.add(error_charts(drawn));
+  law.add(std::move(of_law));
+  errors.add(std::move(of_errors));
 }
 
 void TraceSections::add_cycles(const DrawnTrace& drawn) {

@@ -106,12 +106,13 @@ Window window_of(const Motion& m, const Rise& r, double level, double growth) {
 
 /// The rises of a record with the speeds of the disc at each, over their median: it loads the spring at that speed, and
 /// the block leaves in proportion to it.
-std::vector<Window> windows_of(const Motion& m, const std::vector<Rise>& rises, double level, double growth) {
-  std::vector<Window> windows;
+std::vector<Window> windows_of(const Motion& m, const std::vector<Rise>& rises, double level, double growth,
+                               int threads) {
+  std::vector<Window> windows(rises.size());
+  run_tasks(rises.size(), threads, [&](std::size_t k) { windows[k] = window_of(m, rises[k], level, growth); });
   std::vector<double> speeds;
-  for (const Rise& rise : rises) {
-    windows.push_back(window_of(m, rise, level, growth));
-    const std::size_t end = windows.back().begin + static_cast<std::size_t>(windows.back().crossing);
+  for (const Window& window : windows) {
+    const std::size_t end = window.begin + static_cast<std::size_t>(window.crossing);
     speeds.push_back(std::abs(m.disc_velocity_at(end)));
   }
   const double usual = median(speeds);
@@ -178,12 +179,13 @@ CommonGrowth fit_common_growth(const std::vector<Window>& windows, double level,
 }
 
 // Each rise with its own break-away.
-void locate_each(std::vector<Window>& windows, const CommonGrowth& common) {
-  for (Window& w : windows) {
+void locate_each(std::vector<Window>& windows, const CommonGrowth& common, int threads) {
+  run_tasks(windows.size(), threads, [&](std::size_t k) {
+    Window& w = windows[k];
     const Growth growth = growth_in(w, common.fit.growth);
     const double reaches = std::log1p(common.level / (growth.a + growth.b)) / growth.lambda;
     w.t0 = fit_time(w, common.fit.growth, w.crossing - reaches);
-  }
+  });
 }
 
 double time_of(const Motion& m, const Window& w, double t0) {
@@ -257,15 +259,15 @@ std::vector<BreakAway> locate_break_aways(const Motion& motion, const std::vecto
   const double noise = motion.velocity_noise;
   const double level = std::max({kGrowthOverPeak * peak, std::min(kGrowthOverNoise * noise, kGrowthAtMost * peak),
                                  std::min(kinematics::kSlipsOverError * noise, kinematics::kSlipsOverFastest * peak)});
-  std::vector<Rise> rises;
-  for (const Onset& onset : onsets) rises.push_back(rise_of(motion, onset));
+  std::vector<Rise> rises(onsets.size());
+  run_tasks(onsets.size(), threads, [&](std::size_t k) { rises[k] = rise_of(motion, onsets[k]); });
   const double growth = growth_time(motion, rises, level);
-  std::vector<Window> windows = windows_of(motion, rises, level, growth);
+  std::vector<Window> windows = windows_of(motion, rises, level, growth, threads);
   CommonGrowth common = fit_common_growth(windows, level, growth);
-  locate_each(windows, common);
+  locate_each(windows, common, threads);
   if (set_excess(motion, rises, threads, windows)) {
     common = fit_common_growth(windows, level, growth);
-    locate_each(windows, common);
+    locate_each(windows, common, threads);
   }
   const bool creeps = contact_creeps(rises, windows);
   for (std::size_t k = 0; k < rises.size(); ++k) {

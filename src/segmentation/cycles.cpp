@@ -54,13 +54,10 @@ class PhaseFinder {
       : motion_(motion), slips_(slips), thresholds_(thresholds), threads_(threads) {}
 
   std::vector<Cycle> find() {
-    for (std::size_t k = 0; k < slips_.size(); ++k) {
-      Cycle c = blank_cycle(slips_[k]);
-      const std::size_t after = end_slip(k, c);
-      begin_stick(k, c);
-      cycles_.push_back(c);
-      stick_follows_ = after;
-    }
+    for (const RawSlip& slip : slips_) cycles_.push_back(blank_cycle(slip));
+    std::vector<std::size_t> after(slips_.size());  // the first sample of what follows a slip
+    run_tasks(slips_.size(), threads_, [&](std::size_t k) { after[k] = end_slip(k, cycles_[k]); });
+    for (std::size_t k = 0; k < slips_.size(); ++k) begin_stick(k, k > 0 ? after[k - 1] : 0);
     if (!cycles_.empty()) end_in_stick(cycles_.back(), slips_.back().ends_within && can_stick());
     set_break_aways();
     return std::move(cycles_);
@@ -86,19 +83,21 @@ class PhaseFinder {
     return std::max(c.slip.end, first_after(motion_.time, c.restick_time + half, slip.samples.end));
   }
 
-  /// Where the motion only reverses, the slip before has not ended in stick.
-  void begin_stick(std::size_t k, Cycle& c) {
+  /// The stick before slip k, from sample `first` on. Where the motion only reverses, the slip before has not ended in
+  /// stick.
+  void begin_stick(std::size_t k, std::size_t first) {
     const RawSlip& slip = slips_[k];
+    Cycle& c = cycles_[k];
     bool sticks = slip.begins_within && can_stick();
     if (k > 0) {
       sticks = sticks && !segmentation::only_reverses(motion_, slips_[k - 1], slip, thresholds_);
-      end_in_stick(cycles_.back(), slips_[k - 1].ends_within && sticks);
+      end_in_stick(cycles_[k - 1], slips_[k - 1].ends_within && sticks);
     }
-    if (!sticks || stick_follows_ >= slip.samples.begin) return;
-    c.stick = {stick_follows_, slip.samples.begin};
+    if (!sticks || first >= slip.samples.begin) return;
+    c.stick = {first, slip.samples.begin};
     c.stick_complete = k > 0;
     with_stick_.push_back(k);
-    onsets_.push_back({stick_follows_, slip.samples.begin, c.slip.end, slip.direction});
+    onsets_.push_back({first, slip.samples.begin, c.slip.end, slip.direction});
   }
 
   void set_break_aways() {
@@ -131,7 +130,6 @@ class PhaseFinder {
   std::vector<Cycle> cycles_;
   std::vector<Onset> onsets_;
   std::vector<std::size_t> with_stick_;  ///< the cycles of these onsets
-  std::size_t stick_follows_ = 0;        ///< first sample after the slip before
 };
 
 /// Whether anything sticks: what is slow beside the fastest slip need not be at rest.

@@ -1,5 +1,6 @@
 #include "reductions.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tribofit {
@@ -9,6 +10,20 @@ namespace {
 constexpr std::size_t kMostBlocks = std::size_t{1} << 17;
 
 }  // namespace
+
+Extremes extremes(std::span<const double> x) {
+  Extremes first{x[0], x[0]}, second = first, third = first, fourth = first;  // four strands hide the latency
+  std::size_t i = 0;
+  for (const std::size_t whole = x.size() - x.size() % 4; i < whole; i += 4) {
+    first.take(x[i]);
+    second.take(x[i + 1]);
+    third.take(x[i + 2]);
+    fourth.take(x[i + 3]);
+  }
+  for (; i < x.size(); ++i) first.take(x[i]);
+  return {std::min({first.low, second.low, third.low, fourth.low}),
+          std::max({first.high, second.high, third.high, fourth.high})};
+}
 
 std::vector<double> thinned(std::span<const double> values, std::size_t most) {
   const std::size_t stride = std::max<std::size_t>(1, values.size() / most);

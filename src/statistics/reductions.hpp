@@ -10,28 +10,22 @@ namespace tribofit {
 /// Smallest and largest of some samples.
 struct Extremes {
   double low = 0, high = 0;
+
+  void take(double value) {
+    low = value < low ? value : low;
+    high = value > high ? value : high;
+  }
 };
 
-/// Extremes of a span that is not empty. Four strands hide the latency of the comparison.
-inline Extremes extremes(std::span<const double> x) {
-  double low[4] = {x[0], x[0], x[0], x[0]}, high[4] = {x[0], x[0], x[0], x[0]};
-  std::size_t i = 0;
-  for (; i + 4 <= x.size(); i += 4) {
-    for (std::size_t k = 0; k < 4; ++k) {
-      low[k] = x[i + k] < low[k] ? x[i + k] : low[k];
-      high[k] = x[i + k] > high[k] ? x[i + k] : high[k];
-    }
-  }
-  for (; i < x.size(); ++i) low[0] = std::min(low[0], x[i]), high[0] = std::max(high[0], x[i]);
-  return {std::min({low[0], low[1], low[2], low[3]}), std::max({high[0], high[1], high[2], high[3]})};
-}
+/// Extremes of a span that is not empty.
+Extremes extremes(std::span<const double> x);
 
 /// Sum of term(sample), in four strands.
 template <typename Term>
 double sum_of(std::span<const double> x, Term term) {
   double sum[4] = {0, 0, 0, 0};
   std::size_t i = 0;
-  for (; i + 4 <= x.size(); i += 4) {
+  for (const std::size_t whole = x.size() - x.size() % 4; i < whole; i += 4) {
     for (std::size_t k = 0; k < 4; ++k) sum[k] += term(x[i + k]);
   }
   for (; i < x.size(); ++i) sum[0] += term(x[i]);

@@ -261,6 +261,7 @@ WorkbenchPicture WorkbenchSession::show(const WorkbenchChoice& choice, FitDetail
   const std::vector<std::string> own = arguments_of(picture.rung.choice);
   report.arguments.insert(report.arguments.end(), own.begin(), own.end());
   report.instruments_declared = s.options.instruments_declared;
+  report.threads = identify.threads;
   picture.report = prepared->draw(std::move(part), choice.selection, std::move(report), picture.cycles);
   return picture;
 }

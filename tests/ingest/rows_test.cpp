@@ -39,6 +39,43 @@ std::string random_decimal(std::mt19937_64& random) {
   }
 }
 
+/// Read without a number before it.
+const char* read_decimal(const char* text, char decimal, double& value) {
+  DecimalForm form;
+  return read_decimal(text, decimal, value, form);
+}
+
+/// A column is written with decimals that are fixed or not; each number is read knowing the form of the one before it.
+TEST(Decimal, FollowsTheFormOfTheNumbersBeforeIt) {
+  std::mt19937_64 random(20261126);
+  std::uniform_int_distribution<int> decimals(0, 9), one_of(0, 9);
+  std::normal_distribution<double> normal(0, 1);
+  DecimalForm form;
+  std::size_t same_form = 0;
+  int places = 5;
+  for (int i = 0; i < 300000; ++i) {
+    if (one_of(random) == 0) places = decimals(random);
+    const double number = normal(random) * (one_of(random) < 2 ? 1000 : 1);
+    const std::string text = one_of(random) == 0 ? random_decimal(random) : fmt::format("{:.{}f}", number, places);
+    const std::string ending[] = {",9", ";", " ", "\n-", "e5,", "E-2", "/"};
+    const std::string line = text + ending[static_cast<std::size_t>(i % 7)] + std::string(1 + kReadBeyond, '8');
+    const DecimalForm before = form;
+    double value = 0, alone = 0;
+    const char* end = read_decimal(line.c_str(), '.', value, form);
+    const char* expected = read_decimal(line.c_str(), '.', alone);
+    ASSERT_EQ(end, expected) << line;
+    if (end == nullptr) continue;
+    ASSERT_EQ(std::bit_cast<std::uint64_t>(value), std::bit_cast<std::uint64_t>(alone)) << line;
+    char* told = nullptr;
+    ASSERT_EQ(std::bit_cast<std::uint64_t>(value), std::bit_cast<std::uint64_t>(std::strtod(line.c_str(), &told)))
+        << line;
+    ASSERT_EQ(end, told) << line;
+    same_form += before.whole == form.whole && before.fraction == form.fraction;
+  }
+  EXPECT_GT(same_form, 100000U);
+  EXPECT_LT(same_form, 290000U);
+}
+
 TEST(Decimal, IsRoundedAsStrtodRounds) {
   std::mt19937_64 random(20260101);
   std::size_t short_way = 0;

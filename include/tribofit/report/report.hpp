@@ -106,6 +106,7 @@ struct ReportOptions {
   bool csv_written = false;                 ///< the CSV folder of this result exists already
   bool report_written = false;              ///< and its page
   bool leave_out_cycles = false;            ///< the section cycles_section() of a trace is shown from elsewhere
+  int threads = 1;                          ///< that draw a trace side by side; 0: as many as there are
 };
 
 /// A trace: three cycles of friction and velocity beside the laws, friction over v_r with both branches, parameters,

@@ -48,4 +48,12 @@ void run_tasks(std::size_t count, int threads, Task&& task) {
   if (failure) std::rethrow_exception(failure);
 }
 
+/// Runs task(begin, end) for parts of 0 ... count-1 that lie in the cache of a core, as run_tasks() does.
+template <class Task>
+void run_over_parts(std::size_t count, int threads, Task&& task) {
+  constexpr std::size_t kPart = std::size_t{1} << 15;
+  run_tasks((count + kPart - 1) / kPart, threads,
+            [&](std::size_t k) { task(k * kPart, std::min(count, (k + 1) * kPart)); });
+}
+
 }  // namespace tribofit

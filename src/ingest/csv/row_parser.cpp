@@ -23,7 +23,7 @@ namespace tribofit {
 
 RowParser::RowParser(const std::vector<WantedCell>& wanted, std::size_t cells, char separator, char decimal,
                      bool may_be_short)
-    : wanted_(wanted), cells_(cells), separator_(separator), decimal_(decimal), may_be_short_(may_be_short) {
+    : wanted_(wanted), forms_(wanted.size()), cells_(cells), separator_(separator), decimal_(decimal), may_be_short_(may_be_short) {
   std::size_t next = 0;
   for (const WantedCell& cell : wanted) {
     skips_.push_back(cell.index - next);
@@ -46,7 +46,7 @@ RowParser::Outcome RowParser::parse(char* line, double* out) {
 }
 
 char* RowParser::parse_plain_rows(char* at, const char* end, const std::vector<double*>& column,
-                                  std::size_t& row) const {
+                                  std::size_t& row) {
   const auto read = [&](const auto& parse_row) {
     while (at < end) {
       char* next = parse_row();
@@ -70,7 +70,7 @@ char* RowParser::parse_plain_rows(char* at, const char* end, const std::vector<d
 
 /// The line after the one at `at`; null leaves that to the long way.
 template <char separator>
-char* RowParser::parse_plain_row(char* at, const char* end, const std::vector<double*>& column, std::size_t row) const {
+char* RowParser::parse_plain_row(char* at, const char* end, const std::vector<double*>& column, std::size_t row) {
   std::size_t cell = 0, k = 0;
   for (const std::size_t skip : skips_) {
     for (std::size_t i = 0; i < skip; ++i, ++cell) {
@@ -79,7 +79,8 @@ char* RowParser::parse_plain_row(char* at, const char* end, const std::vector<do
       ++at;
     }
     while (*at == ' ') ++at;
-    const char* after = read_decimal(at, decimal_, column[k++][row]);
+    const char* after = read_decimal(at, decimal_, column[k][row], forms_[k]);
+    ++k;
     if (after == nullptr) return nullptr;
     at += after - at;
     while (*at == ' ') ++at;
@@ -100,7 +101,7 @@ char* RowParser::parse_plain_row(char* at, const char* end, const std::vector<do
 }
 
 /// The short way for columns that blanks and tabs divide. False leaves the line to the long way.
-bool RowParser::parse_blanks(const char* line, double* out) const {
+bool RowParser::parse_blanks(const char* line, double* out) {
   const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
   const char* at = line;
   std::size_t cell = 0, next = 0;
@@ -108,7 +109,8 @@ bool RowParser::parse_blanks(const char* line, double* out) const {
     while (is_blank(*at)) ++at;
     if (*at == '\0') break;
     if (next < wanted_.size() && wanted_[next].index == cell) {
-      at = read_decimal(at, decimal_, out[next++]);
+      at = read_decimal(at, decimal_, out[next], forms_[next]);
+      ++next;
       if (at == nullptr || (*at != '\0' && !is_blank(*at))) return false;
     } else {
       for (; *at != '\0' && !is_blank(*at); ++at) {

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "decimal.hpp"
+
 namespace tribofit {
 
 /// A cell that is asked for in each row.
@@ -29,7 +31,7 @@ class RowParser {
   /// Reads whole lines of plain numbers from `at` on, up to `end` (where a NUL stands) or the first that is none, in
   /// one pass: decimals without quotes, the right number of cells. Row `row` goes into column[k][row] for the wanted
   /// cell k, and `row` counts on. Returns the beginning of the first line that it has not read.
-  char* parse_plain_rows(char* at, const char* end, const std::vector<double*>& column, std::size_t& row) const;
+  char* parse_plain_rows(char* at, const char* end, const std::vector<double*>& column, std::size_t& row);
 
   /// Parses `line` (ended by NUL; may be changed) into `out`, one number for each wanted cell, as written; NaN where a
   /// cell holds none of a usable size. defect() says what is wrong after Outcome::wrong, and in the first cell without
@@ -44,8 +46,8 @@ class RowParser {
 
  private:
   template <char separator>
-  char* parse_plain_row(char* at, const char* end, const std::vector<double*>& column, std::size_t row) const;
-  bool parse_blanks(const char* line, double* out) const;
+  char* parse_plain_row(char* at, const char* end, const std::vector<double*>& column, std::size_t row);
+  bool parse_blanks(const char* line, double* out);
   template <char separator>
   Outcome parse_carefully(char* line, double* out);
   template <char separator>
@@ -58,6 +60,7 @@ class RowParser {
   bool to_number(char* cell, double& value) const;
 
   const std::vector<WantedCell>& wanted_;
+  std::vector<DecimalForm> forms_;  // of the numbers last read
   std::vector<std::size_t> skips_;  // cells between one that is wanted and the next
   std::size_t cells_;
   char separator_, decimal_;

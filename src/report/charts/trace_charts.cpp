@@ -10,6 +10,7 @@
 #include "report/charts/styles.hpp"
 #include "report/numbers.hpp"
 #include "statistics/thinning.hpp"
+#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/spectrum.hpp"
 
 namespace tribofit {
@@ -179,11 +180,14 @@ Chart cycle_chart(const DrawnTrace& d, const char* id, const char* title, ChartA
 }  // namespace
 
 DrawnTrace::DrawnTrace(const Identification& identification, const std::vector<const Fit*>& beside,
-                       const std::vector<const Fit*>& laws, std::string prefix, double part, std::size_t record)
-    : trace(identification), models(beside), curves(laws), id(std::move(prefix)), share(part) {
+                       const std::vector<const Fit*>& laws, std::string prefix, double part, std::size_t record,
+                       int draw_on)
+    : trace(identification), models(beside), curves(laws), id(std::move(prefix)), share(part), threads(draw_on) {
   pieces = slip_branches(trace.motion, trace.segmentation);
   fastest = fastest_of(trace.motion, pieces) / kMillimetre;
-  for (const Fit* model : models) predictions.push_back(predict(*model, trace.motion, trace.segmentation, record));
+  predictions.resize(models.size());
+  run_tasks(models.size(), threads,
+            [&](std::size_t k) { predictions[k] = predict(*models[k], trace.motion, trace.segmentation, record); });
 }
 
 std::size_t DrawnTrace::bins(std::size_t whole) const {

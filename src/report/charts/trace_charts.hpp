@@ -19,9 +19,11 @@ struct DrawnTrace {
   std::vector<std::vector<double>> predictions;  ///< of each model, NaN outside slips
   std::vector<SlipBranch> pieces;                ///< of the slips
   double fastest = 0;                            ///< |v_r| of them [mm/s]; 0 where nothing slips
+  int threads;                                   ///< that draw side by side
 
   DrawnTrace(const Identification& identification, const std::vector<const Fit*>& beside,
-             const std::vector<const Fit*>& laws, std::string prefix, double part = 1, std::size_t record = 0);
+             const std::vector<const Fit*>& laws, std::string prefix, double part = 1, std::size_t record = 0,
+             int draw_on = 1);
   /// Points that a series of this trace may have where a trace alone has `whole`.
   std::size_t bins(std::size_t whole) const;
 };
