@@ -111,14 +111,17 @@ void subtract(double factor, const double* x, double* y, Eigen::Index n) {
 }  // namespace
 
 double dot(const double* x, const double* y, Eigen::Index n) {
-  Pair even = {}, odd = {};
+  Pair sums[4] = {};  // hide the latency of the addition
   Eigen::Index i = 0;
-  for (; i + 4 <= n; i += 4) {
-    even += pair_at(x + i) * pair_at(y + i);
-    odd += pair_at(x + i + 2) * pair_at(y + i + 2);
+  for (; i + 8 <= n; i += 8) {
+    sums[0] += pair_at(x + i) * pair_at(y + i);
+    sums[1] += pair_at(x + i + 2) * pair_at(y + i + 2);
+    sums[2] += pair_at(x + i + 4) * pair_at(y + i + 4);
+    sums[3] += pair_at(x + i + 6) * pair_at(y + i + 6);
   }
-  even += odd;
-  double sum = even[0] + even[1];
+  for (; i + 2 <= n; i += 2) sums[0] += pair_at(x + i) * pair_at(y + i);
+  const Pair all = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  double sum = all[0] + all[1];
   for (; i < n; ++i) sum += x[i] * y[i];
   return sum;
 }

@@ -102,11 +102,11 @@ inline constexpr double kPlannedTolerance = 1e-7;
 /// of the question.
 inline constexpr double kTemper = 2, kMostBehind = 60;
 
-/// Values of a slip by which a drawn machine is judged, squares over what the covariance promises (twice: a minimum
-/// that is not quite a parabola), by how much a draw beyond is shortened, and how often: to 1 %.
-inline constexpr std::size_t kValuesOfPlausible = 30;
-inline constexpr double kRiseOverPromised = 2, kShortened = 0.7;
-inline constexpr int kMostShortenings = 13;
+/// Values by which drawn machines are judged, over all slips and of one: means over fewer move a contact that creeps.
+/// Rounds of the walkers until they have forgotten where they began (a flat valley takes some dozens), and of which
+/// they are kept.
+inline constexpr std::size_t kValuesOfPlausible = 16000, kFewestOfSlip = 60, kMostOfSlip = 400;
+inline constexpr std::size_t kRoundsToForget = 60, kRoundsOfDraws = 30;
 
 /// Cycles of a run: fewer show their scatter badly, more take time to diagnose and show little that is new.
 inline constexpr double kFewestPlannedCycles = 40, kMostPlannedCycles = 120;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "tribofit/fit/fit.hpp"
 #include "tribofit/study/identified.hpp"
@@ -10,23 +11,22 @@ namespace tribofit {
 
 /// Machines that a record leaves possible.
 ///
-/// The covariance of a fit knows the curvature at its minimum. Where a record hardly fixes an effect (a run-in of w =
-/// -0.09 +- 0.11 over L = 74 +- 160 mm), some of what is drawn with it contradicts the record: of six such draws one
-/// has no run-in at all, though without one the record is not described. So a draw whose squares rise by far more than
-/// the covariance promises is taken back towards the minimum.
+/// The covariance of a fit is no guide to them where a record hardly fixes an effect: of a heating of h = 0.08 +- 0.46
+/// over tau = 20 s +- infinity the one that warms nothing is drawn as often as the one that is there, though without
+/// one the record is not described. So parameters are drawn as the likelihood allows them, within their bounds, those
+/// that are positive uniformly in their logarithm; weakened by kTemper, as the odds between models are.
 class PlausibleDraws {
  public:
   PlausibleDraws() = default;
-  /// known: of `record`, which must outlive this object.
+  /// known: of `record`. Cost: several hundred passes over some values of each slip.
   PlausibleDraws(const IdentifiedMachine& known, const Record& record);
 
-  /// One machine; the same for the same seed. Cost: a few passes over some values of each slip.
+  /// One machine; the same for the same seed. Its rig is drawn by the covariance of its fit.
   Machine draw(std::uint64_t seed) const;
 
  private:
-  struct Squares;
   IdentifiedMachine known_;
-  std::shared_ptr<const Squares> squares_;
+  std::shared_ptr<const std::vector<std::vector<double>>> parameters_;  ///< that are possible; none: by covariance
 };
 
 }  // namespace tribofit

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "diagnosis/limits.hpp"
@@ -57,6 +58,25 @@ double chance_to_distinguish(const std::vector<Evidence>& draws, std::size_t riv
   const double least = std::max(diagnosis::limits::kDistinguishable, size / n);
   const double beyond = (mean - least) / std::sqrt(variance * (1 + longer / n));
   return (all - n + n * normal_tail_below(beyond)) / all;
+}
+
+/// Chance that all rivals are distinguished, from that of each. Every difference is what a rival leaves less what the
+/// true model leaves: they have that in common, half of their variance. One alone counts as it is.
+double chance_of_all(const std::vector<double>& chances) {
+  const boost::math::normal_distribution<double> normal;
+  constexpr double kStep = 0.05, kEnd = 6;
+  std::vector<double> beyond;
+  for (const double chance : chances)
+    beyond.push_back(boost::math::quantile(normal, std::clamp(chance, 1e-9, 1 - 1e-9)));
+  double sum = 0, weights = 0;
+  for (double common = -kEnd; common <= kEnd; common += kStep) {
+    const double weight = std::exp(-0.5 * common * common);
+    double all = weight;
+    for (const double z : beyond) all *= normal_tail_below(std::numbers::sqrt2 * z + common);
+    sum += all;
+    weights += weight;
+  }
+  return sum / weights;
 }
 
 /// The records as they are, then the simulated ones.
@@ -127,10 +147,12 @@ double chance_to_name(const OpenQuestion& question, std::size_t truth, const std
   double chance = (1 - static_cast<double>(ruled_out) / static_cast<double>(seen.size())) *
                   chance_of_p(seen, Limits{}.p_value, lengthening.of_cycles);
   if (question.kind == QuestionKind::group) {
+    std::vector<double> of_rivals;
     for (std::size_t rival = 0; rival < question.models.size(); ++rival) {
       const double now = question.behind[rival] - question.behind[truth];
-      if (rival != truth) chance = std::min(chance, chance_to_distinguish(seen, rival, now, lengthening));
+      if (rival != truth) of_rivals.push_back(chance_to_distinguish(seen, rival, now, lengthening));
     }
+    chance = std::min(chance, chance_of_all(of_rivals));
   }
   return simulated * chance;
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <memory>
+#include <set>
 
 #include "diagnosis/ruling.hpp"
 #include "fit/fit_laws.hpp"
@@ -168,26 +169,26 @@ TEST(Plan, MachinesAreDrawnThatDescribeTheRecord) {
   ASSERT_EQ(known.reason, "");
   const PlausibleDraws draws(known, record);
   const Observations observations = observe(trace.motion, trace.segmentation, model.needs(), 40);
-  const ModelResiduals residuals(model, observations, all_slips(observations));
-  const auto squares_of = [&](const std::vector<double>& p) {
-    double sum = 0;
-    for (const double square : residuals.squares(p.data())) sum += square;
-    return sum;
-  };
-  const double least = squares_of(known.machine.parameters);
-  int taken_back = 0;
-  double spread = 0;
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+  ModelResiduals residuals(model, observations, all_slips(observations));
+  const ModelResiduals::Whitening whitening = residuals.whitening_at(known.machine.parameters.data());
+  residuals.whiten(whitening);
+  const double least = residuals.white_squares(known.machine.parameters.data());
+  const double noise = least / static_cast<double>(observations.size());
+  double mean = 0, by_covariance = 0;
+  std::set<double> lengths;
+  constexpr int kDraws = 200;
+  for (std::uint64_t seed = 1; seed <= kDraws; ++seed) {
     const Machine drawn = draws_of(known.machine, known.covariance, 1, seed).front(), machine = draws.draw(seed);
-    spread = std::max(spread, std::abs(machine.parameters[3] - known.machine.parameters[3]));
     EXPECT_EQ(machine.parameters, draws.draw(seed).parameters);
-    if (machine.parameters == drawn.parameters) continue;
-    ++taken_back;
-    EXPECT_LT(squares_of(machine.parameters) - least, 0.3 * (squares_of(drawn.parameters) - least)) << seed;
+    mean += (residuals.white_squares(machine.parameters.data()) - least) / noise / kDraws;
+    by_covariance += (residuals.white_squares(drawn.parameters.data()) - least) / noise / kDraws;
+    lengths.insert(machine.parameters[4]);
   }
-  EXPECT_GE(taken_back, 1);
-  EXPECT_LE(taken_back, 10);
-  EXPECT_GT(spread, 0.5 * fit.parameters[3].std_error);  // they differ
+  // Squares over the noise rise by the number of parameters, twice that where the evidence is weakened by 2.
+  EXPECT_NEAR(mean, 2 * 5, 4);
+  EXPECT_GT(by_covariance, 5 * mean);
+  EXPECT_GT(lengths.size(), 50U);
+  EXPECT_GT(*lengths.rbegin(), 1.5 * *lengths.begin());  // and they differ
 }
 
 }  // namespace

@@ -155,9 +155,9 @@ inline constexpr double kHopeless = 0.2;
 
 /// Plans the runs that settle what a diagnosis leaves open.
 ///
-/// Each experiment that the means allow is simulated with every model in question: rig, law and effects drawn from
-/// their posterior (normal, within bounds), with the noise, the colour of the noise and the scatter of break-away of
-/// the records. The simulated runs are judged together with the records by the rule of evidence of the diagnosis. For
+/// Each experiment that the means allow is simulated with every model in question: law and effects drawn as the
+/// likelihood of the record allows them within their bounds, the rig by the covariance of its fit, with the noise, the
+/// colour of the noise and the scatter of break-away of the records. The simulated runs are judged together with the records by the rule of evidence of the diagnosis. For
 /// all experiments the expected difference of the held-out squares between the models (twice a log likelihood ratio,
 /// W. G. Hunter, A. M. Reiner, Technometrics 7 (1965) 307, doi:10.2307/1266591; G. E. P. Box, W. J. Hill, Technometrics
 /// 9 (1967) 57, doi:10.2307/1266318) gives the chance that the rule distinguishes them, by a normal approximation: with
