@@ -157,15 +157,15 @@ inline constexpr double kHopeless = 0.2;
 ///
 /// Each experiment that the means allow is simulated with every model in question: law and effects drawn as the
 /// likelihood of the record allows them within their bounds, the rig by the covariance of its fit, with the noise, the
-/// colour of the noise and the scatter of break-away of the records. The simulated runs are judged together with the records by the rule of evidence of the diagnosis. For
-/// all experiments the expected difference of the held-out squares between the models (twice a log likelihood ratio,
-/// W. G. Hunter, A. M. Reiner, Technometrics 7 (1965) 307, doi:10.2307/1266591; G. E. P. Box, W. J. Hill, Technometrics
-/// 9 (1967) 57, doi:10.2307/1266318) gives the chance that the rule distinguishes them, by a normal approximation: with
-/// the right one known, what a run adds to that difference has a variance of four times its mean, which grows with the
-/// run; each is made as long as is worth it. For the best few the mean is that of several draws, and records are
-/// diagnosed in full: what is named counts beside that chance as a beta prior, and the chances of the others are
-/// lowered by as much as full diagnoses named less than was expected, until the best of all has been diagnosed in full.
-/// Experiments are ranked by probability less a cost for each minute.
+/// colour of the noise and the scatter of break-away of the records. The simulated runs are judged together with the
+/// records by the rule of evidence of the diagnosis. For all experiments the expected difference of the held-out
+/// squares between the models (twice a log likelihood ratio, W. G. Hunter, A. M. Reiner, Technometrics 7 (1965) 307,
+/// doi:10.2307/1266591; G. E. P. Box, W. J. Hill, Technometrics 9 (1967) 57, doi:10.2307/1266318) gives the chance that
+/// the rule distinguishes them, by a normal approximation: with the right one known, what a run adds to that difference
+/// has a variance of four times its mean, which grows with the run; each is made as long as is worth it. For the best
+/// few the mean is that of several draws, and records are diagnosed in full: what is named counts beside that chance as
+/// a beta prior, and the chances of the others are lowered by as much as full diagnoses named less than was expected,
+/// until the best of all has been diagnosed in full. Experiments are ranked by probability less a cost for each minute.
 ///
 /// Only stick-slip on a rig that can be identified is simulated; `reason` says why where it cannot be.
 /// Cost: some 30 judgements of a few models each and a dozen diagnoses, 10 to 20 s of two processors for a record of

@@ -23,7 +23,8 @@ namespace tribofit {
 
 RowParser::RowParser(const std::vector<WantedCell>& wanted, std::size_t cells, char separator, char decimal,
                      bool may_be_short)
-    : wanted_(wanted), forms_(wanted.size()), cells_(cells), separator_(separator), decimal_(decimal), may_be_short_(may_be_short) {
+    : wanted_(wanted), cells_(cells), separator_(separator), decimal_(decimal), may_be_short_(may_be_short) {
+  forms_.resize(wanted.size());
   std::size_t next = 0;
   for (const WantedCell& cell : wanted) {
     skips_.push_back(cell.index - next);
@@ -45,8 +46,7 @@ RowParser::Outcome RowParser::parse(char* line, double* out) {
   }
 }
 
-char* RowParser::parse_plain_rows(char* at, const char* end, const std::vector<double*>& column,
-                                  std::size_t& row) {
+char* RowParser::parse_plain_rows(char* at, const char* end, const std::vector<double*>& column, std::size_t& row) {
   const auto read = [&](const auto& parse_row) {
     while (at < end) {
       char* next = parse_row();
