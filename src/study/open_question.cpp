@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "diagnosis/conclusions.hpp"
@@ -59,6 +60,7 @@ void ask_about_possible(const DiagnosedTraces& diagnosed, OpenQuestion& question
   if (likely == nullptr) return;
   question.kind = QuestionKind::possible;
   question.asked.push_back(*effect_of(diagnosed, likely->key));
+  question.p_value = likely->p_value;
 }
 
 void ask(const DiagnosedTraces& diagnosed, OpenQuestion& question) {
@@ -109,8 +111,14 @@ std::size_t trace_to_continue(const DiagnosedTraces& diagnosed) {
   return best;
 }
 
+/// The least odds, for no effect over any, that a p-value leaves of even ones (T. Sellke, M. J. Bayarri, J. O. Berger,
+/// Amer. Statist. 55 (2001) 62, doi:10.1198/000313001300339950).
+double least_odds_of_nothing(double p_value) {
+  return p_value > 0 && p_value < 1 / std::numbers::e ? -std::numbers::e * p_value * std::log(p_value) : 1;
+}
+
 /// How likely each answer is by the held-out errors so far: exp(-behind/(2 t)) with the temper t, since no model is
-/// the exact one that a likelihood takes it for.
+/// the exact one that a likelihood takes it for; of an effect that is possible by its p-value.
 void weigh(const DiagnosedTraces& diagnosed, const PlanOptions& options, OpenQuestion& question) {
   std::vector<double> weights(question.models.size(), 1.0);
   question.behind.assign(weights.size(), 0.0);
@@ -121,6 +129,8 @@ void weigh(const DiagnosedTraces& diagnosed, const PlanOptions& options, OpenQue
       question.behind[k] = now.effects[k].behind;
       weights[k] = std::exp(-std::clamp(now.effects[k].behind, 0.0, kMostBehind) / (2 * kTemper));
     }
+  } else {
+    weights[1] = least_odds_of_nothing(question.p_value);
   }
   double sum = 0;
   for (const double w : weights) sum += w;

@@ -22,6 +22,7 @@ struct OpenQuestion {
   RecordToContinue record;
   std::size_t trace = 0;  ///< whose conditions the runs go on from
   std::string reason;     ///< why nothing can be simulated
+  double p_value = 1;     ///< of an effect that is possible
   /// Held-out squares of each model behind the best by the records so far, over the noise of a difference (see Ruling);
   /// 0 where one is possible.
   std::vector<double> behind;

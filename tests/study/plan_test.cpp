@@ -10,6 +10,7 @@
 #include "diagnosis/ruling.hpp"
 #include "fit/fit_laws.hpp"
 #include "fit/model_residuals.hpp"
+#include "study/open_question.hpp"
 #include "study/plausible_draws.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/ingest/units.hpp"
@@ -155,6 +156,27 @@ TEST(Plan, NothingIsSettledWhereAnEffectIsFoundAlone) {
 TEST(Plan, SaysWhyNothingCanBePlanned) {
   DiagnosedTraces none;
   EXPECT_FALSE(plan_runs(none).reason.empty());
+}
+
+TEST(Plan, AnEffectThatIsPossibleIsAsLikelyAsItsPValueAllows) {
+  DiagnosedTraces diagnosed = diagnose({open_record("frictional-lag", 0.01, 6, 4000, 0.002)}, IdentifyOptions());
+  ASSERT_EQ(diagnosed.diagnosis.ladder.size(), 1U);
+  const Identification& trace = diagnosed.traces.front();
+  const Record record{&trace.motion, &trace.segmentation};
+  const FrictionModel model(diagnosed.diagnosis.law, {make_effect("viscous")});
+  const Fit fit = fit_model(model, {&record, 1}, observations_for(model, {&record, 1}), {}, {});
+  for (EffectFinding& finding : diagnosed.diagnosis.effects) {
+    if (finding.status == EffectStatus::possible) finding.status = EffectStatus::not_supported;
+    if (finding.key != "viscous") continue;
+    finding.status = EffectStatus::possible;
+    finding.p_value = 0.02;
+    finding.parameters.assign(fit.parameters.begin() + 3, fit.parameters.end());
+  }
+  const OpenQuestion question = open_question(diagnosed, {});
+  ASSERT_EQ(question.kind, QuestionKind::possible);
+  ASSERT_EQ(question.reason, "");
+  // Table 1 of Sellke, Bayarri and Berger (2001): a Bayes factor of 0.213 at the least.
+  EXPECT_NEAR(question.models[1].probability / question.models[0].probability, 0.213, 5e-4);
 }
 
 /// A run-in that this record hardly fixes: the covariance of its fit allows what the record does not.
