@@ -29,8 +29,8 @@ namespace {
 // Chunks end where lines do and depend on the file only, not on the number of threads.
 constexpr std::uint64_t chunk_bytes = std::uint64_t{1} << 17;
 // Chunks that wait for one before them: as many as are read while memory is made present for the rows to come.
-constexpr std::size_t most_waiting = 8;
-constexpr std::size_t chunks_ahead = 3 * most_waiting;
+constexpr std::size_t most_waiting = 4;
+constexpr std::size_t chunks_ahead = 6 * most_waiting;
 
 /// What one chunk of lines gave; lines count from 1 at the chunk's beginning.
 struct Chunk {
