@@ -108,6 +108,10 @@ inline constexpr double kTemper = 2, kMostBehind = 60;
 inline constexpr std::size_t kValuesOfPlausible = 16000, kFewestOfSlip = 60, kMostOfSlip = 400;
 inline constexpr std::size_t kRoundsToForget = 60, kRoundsOfDraws = 30;
 
+/// Logarithm of the likelihood below its maximum within which a walker begins, and the curvature, over that of the
+/// steepest direction, below which a valley counts as flat: the walkers find its length.
+inline constexpr double kFarthestStart = 8, kFlattestStart = 1e-3;
+
 /// Cycles of a run: fewer show their scatter badly, more take time to diagnose and show little that is new.
 inline constexpr double kFewestPlannedCycles = 40, kMostPlannedCycles = 120;
 

@@ -82,12 +82,10 @@ class Coordinates {
 /// Walkers about the minimum, as its curvature allows; those that would leave the bounds, or climb far, nearer to it.
 std::vector<std::vector<double>> walkers_about(const std::vector<double>& least, const Eigen::MatrixXd& information,
                                                const LogDensity& density) {
-  constexpr double kFarthest = 8;  // logarithm of the density below that of the minimum
   const auto n = static_cast<Eigen::Index>(least.size());
   const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const SymmetricEigen eigen = symmetric_eigen(scale.asDiagonal() * information * scale.asDiagonal());
-  constexpr double kFlattest = 1e-3;  // a direction that the record does not fix is left to the walkers
-  const Eigen::VectorXd spread = eigen.values.cwiseMax(kFlattest).cwiseSqrt().cwiseInverse();
+  const Eigen::VectorXd spread = eigen.values.cwiseMax(kFlattestStart).cwiseSqrt().cwiseInverse();
   std::mt19937_64 engine(1);
   boost::random::normal_distribution<double> normal;
   const double top = density(least);
@@ -100,7 +98,7 @@ std::vector<std::vector<double>> walkers_about(const std::vector<double>& least,
     do {
       for (std::size_t k = 0; k < walker.size(); ++k) walker[k] = least[k] + step[static_cast<Eigen::Index>(k)];
       step *= -0.5;
-    } while (!(density(walker) > top - kFarthest) && step.norm() > 0);
+    } while (!(density(walker) > top - kFarthestStart) && step.norm() > 0);
     walkers.push_back(std::move(walker));
   }
   return walkers;

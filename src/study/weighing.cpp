@@ -60,8 +60,17 @@ double chance_to_distinguish(const std::vector<Evidence>& draws, std::size_t riv
   return (all - n + n * normal_tail_below(beyond)) / all;
 }
 
-/// Chance that all rivals are distinguished, from that of each. Every difference is what a rival leaves less what the
-/// true model leaves: they have that in common, half of their variance. One alone counts as it is.
+/// The records as they are, then the simulated ones.
+std::vector<Record> with_runs(const DiagnosedTraces& diagnosed, const std::vector<SimulatedRun>& runs) {
+  std::vector<Record> records = records_of(diagnosed);
+  for (const SimulatedRun& run : runs) {
+    if (run.segmentation.kind != MotionKind::always_sticking) records.push_back({&run.motion, &run.segmentation});
+  }
+  return records;
+}
+
+}  // namespace
+
 double chance_of_all(const std::vector<double>& chances) {
   const boost::math::normal_distribution<double> normal;
   constexpr double kStep = 0.05, kEnd = 6;
@@ -78,17 +87,6 @@ double chance_of_all(const std::vector<double>& chances) {
   }
   return sum / weights;
 }
-
-/// The records as they are, then the simulated ones.
-std::vector<Record> with_runs(const DiagnosedTraces& diagnosed, const std::vector<SimulatedRun>& runs) {
-  std::vector<Record> records = records_of(diagnosed);
-  for (const SimulatedRun& run : runs) {
-    if (run.segmentation.kind != MotionKind::always_sticking) records.push_back({&run.motion, &run.segmentation});
-  }
-  return records;
-}
-
-}  // namespace
 
 std::vector<SimulatedRun> runs_of(const OpenQuestion& question, const Experiment& experiment, std::size_t truth,
                                   std::uint64_t draw, const PlanOptions& options) {

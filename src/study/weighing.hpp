@@ -33,6 +33,10 @@ struct Lengthening {
   double of_cycles = 1;  ///< cycles of all records, over those with the simulated ones
 };
 
+/// Chance that all rivals are distinguished, from that of each. Every difference is what a rival leaves less what the
+/// true model leaves: they have that in common, half of their variance. One alone counts as it is.
+double chance_of_all(const std::vector<double>& chances);
+
 /// Chance that the rule of evidence names the true answer, and it alone, from some draws of it (see plan_runs()).
 double chance_to_name(const OpenQuestion& question, std::size_t truth, const std::vector<Evidence>& draws,
                       const Lengthening& lengthening = {});

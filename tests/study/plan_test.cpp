@@ -12,6 +12,7 @@
 #include "fit/model_residuals.hpp"
 #include "study/open_question.hpp"
 #include "study/plausible_draws.hpp"
+#include "study/weighing.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/oscillator/presets.hpp"
@@ -177,6 +178,17 @@ TEST(Plan, AnEffectThatIsPossibleIsAsLikelyAsItsPValueAllows) {
   ASSERT_EQ(question.reason, "");
   // Table 1 of Sellke, Bayarri and Berger (2001): a Bayes factor of 0.213 at the least.
   EXPECT_NEAR(question.models[1].probability / question.models[0].probability, 0.213, 5e-4);
+}
+
+/// Normal variables that correlate by a half are all positive with a chance of 1 in one more than there are.
+TEST(Plan, RivalsHaveInCommonWhatTheTrueModelLeaves) {
+  EXPECT_NEAR(chance_of_all({0.5, 0.5}), 1.0 / 3, 1e-4);
+  EXPECT_NEAR(chance_of_all({0.5, 0.5, 0.5}), 1.0 / 4, 1e-4);
+  for (const double chance : {0.0, 0.1, 0.7, 1.0}) {
+    EXPECT_NEAR(chance_of_all({chance}), chance, 1e-4);
+    EXPECT_NEAR(chance_of_all({chance, 1}), chance, 1e-4);
+  }
+  EXPECT_EQ(chance_of_all({}), 1);
 }
 
 /// A run-in that this record hardly fixes: the covariance of its fit allows what the record does not.

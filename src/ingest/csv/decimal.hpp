@@ -7,7 +7,7 @@
 
 namespace tribofit {
 
-/// Bytes behind a number that read_decimal() may look at.
+/// Bytes behind a number that read_decimal() may look at: a sign, up to seven digits, a mark and eight characters.
 inline constexpr std::size_t kReadBeyond = 18;
 
 inline bool is_digit(char c) {
