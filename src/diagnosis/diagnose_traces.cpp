@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <utility>
@@ -66,6 +67,38 @@ void remove_load_coupling(Identification& trace) {
   if (kappa.std_error > 0 && t_p_value(kappa.value / kappa.std_error, kappa.degrees_of_freedom) > chance) return;
   uncouple_load(kappa.value, trace.motion);
   trace.load_coupling = kappa;
+}
+
+/// Of runs with one force sensor: it is a low-pass in all of them where most of their slips show it, and in none where
+/// they do not. Few cycles, or noise, show or hide it wrongly; and what laws are filtered by must not differ from run
+/// to run, or none describes all.
+void share_friction_filter(std::vector<PreparedTrace>& traces) {
+  std::vector<PreparedTrace*> with, without;
+  double cycles_with = 0, cycles = 0;
+  UndoneDistortion shared;
+  for (PreparedTrace& prepared : traces) {
+    const Identification& trace = prepared.trace;
+    if (!trace.analysed || trace.segmentation.kind != MotionKind::stick_slip) continue;
+    const auto own = static_cast<double>(trace.segmentation.cycles.size());
+    const UndoneDistortion& tau = trace.motion.friction_low_pass;
+    cycles += own;
+    (tau.any() ? with : without).push_back(&prepared);
+    if (!tau.any()) continue;
+    cycles_with += own;
+    shared.value += (tau.value - shared.value) * own / cycles_with;
+    shared.std_error += (tau.std_error - shared.std_error) * own / cycles_with;
+  }
+  const bool is_filter = cycles_with > limits::kMostOfCycles * cycles;
+  if (with.empty() || without.empty()) return;
+  for (PreparedTrace* prepared : is_filter ? without : with) {
+    prepared->motion.friction_low_pass = is_filter ? shared : UndoneDistortion{};
+    prepared->trace = prepared->prepare(prepared->motion);
+    prepared->trace.motion.notes.push_back(
+        is_filter ? fmt::format("friction: a low-pass at {:.3g} Hz, as in the other runs; each law is filtered the same way",
+                                1 / (2 * std::numbers::pi * shared.value))
+                  : "friction: it seems to be read through a low-pass, which the other runs do not show; not taken");
+    remove_load_coupling(prepared->trace);
+  }
 }
 
 /// Takes back corrections of the plateau that nobody asked for, where the effect that was found lets the block creep as
@@ -216,6 +249,7 @@ DiagnosedTraces diagnose_traces(std::vector<PreparedTrace> traces, const Identif
   const EffectRoles effects = roles_of(options.effects);
   out.analysed = all_can_be_diagnosed(options.effects, effects, traces);
   if (out.analysed) {
+    share_friction_filter(traces);
     DiagnosisOptions inner = given;
     inner.threads = options.threads;
     inner.from_the_start = effects.from_the_start;

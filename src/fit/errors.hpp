@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tribofit/fit/fit.hpp"
+#include "tribofit/statistics/polynomials.hpp"
 
 namespace tribofit {
 
@@ -39,6 +40,10 @@ class FullRecord {
 std::size_t noise_stretch(std::size_t samples);
 
 SensorNoise sensor_noise(const Motion& motion, const Segmentation& segmentation);
+
+/// Of a channel of the motion, about parabolas within the sticks; none where too little sticks.
+CorrelatedNoise noise_in_sticks(const std::vector<double>& channel, const Motion& motion,
+                                const Segmentation& segmentation);
 
 FlickerNoise flicker_noise(const Motion& motion, const Segmentation& segmentation);
 /// Writes the noise of a record to its observations, with what its slow part does to each slip: as much in every e-fold

@@ -28,10 +28,8 @@ Remainder about_parabola(std::span<const double> x, std::size_t begin, std::size
 }
 
 /// Noise as the pooled spread, leaving out stretches that hold something else (an event, a transient, a drop-out).
-/// A parabola takes three degrees of freedom from white noise, and (1+rho)/(1-rho) times as many from noise whose
-/// neighbours are correlated by rho.
-double pooled_noise(const std::vector<Remainder>& parts) {
-  if (parts.empty()) return 0;
+CorrelatedNoise pooled_noise(const std::vector<Remainder>& parts) {
+  if (parts.empty()) return {};
   std::vector<double> variances;
   for (const Remainder& part : parts) variances.push_back(part.squares / part.count);
   // The quiet quarter sets the scale: ringing after re-stick may fill most stretches of a short stick.
@@ -43,9 +41,7 @@ double pooled_noise(const std::vector<Remainder>& parts) {
     all += part;
     used += 1;
   }
-  if (!(all.squares > 0)) return 0;
-  const double freedom = all.count - 3 * used * variance_inflation(all.correlation(0.97));
-  return std::sqrt(all.squares / std::max(freedom, 0.25 * all.count));
+  return noise_about_parabolas(all, used);
 }
 
 bool is_spoilt(const Motion& motion, const SampleRange& samples) {
@@ -89,9 +85,9 @@ std::vector<SampleRange> slip_stretches(const Motion& motion, const Segmentation
   return parts;
 }
 
-std::vector<Remainder> about_parabolas(const Motion& motion, const std::vector<SampleRange>& stretches) {
+std::vector<Remainder> about_parabolas(const std::vector<double>& channel, const std::vector<SampleRange>& stretches) {
   std::vector<Remainder> out;
-  for (const SampleRange& part : stretches) out.push_back(about_parabola(motion.friction, part.begin, part.end));
+  for (const SampleRange& part : stretches) out.push_back(about_parabola(channel, part.begin, part.end));
   return out;
 }
 
@@ -208,10 +204,15 @@ void add_noise(const Motion& motion, const RecordNoise& noise, Observations& out
 
 SensorNoise sensor_noise(const Motion& motion, const Segmentation& segmentation) {
   if (motion.is_points()) return noise_of_points(motion, segmentation);
-  std::vector<Remainder> parts = about_parabolas(motion, stick_stretches(motion, segmentation));
+  std::vector<Remainder> parts = about_parabolas(motion.friction, stick_stretches(motion, segmentation));
   const bool in_stick = parts.size() >= 3;
-  if (!in_stick) parts = about_parabolas(motion, slip_stretches(motion, segmentation));
-  return {pooled_noise(parts), sampling_error(motion, segmentation), in_stick ? "stick" : "slip"};
+  if (!in_stick) parts = about_parabolas(motion.friction, slip_stretches(motion, segmentation));
+  return {pooled_noise(parts).deviation, sampling_error(motion, segmentation), in_stick ? "stick" : "slip"};
+}
+
+CorrelatedNoise noise_in_sticks(const std::vector<double>& channel, const Motion& motion,
+                                const Segmentation& segmentation) {
+  return pooled_noise(about_parabolas(channel, stick_stretches(motion, segmentation)));
 }
 
 RecordNoise noise_of(const Motion& motion, const Segmentation& segmentation, int threads) {

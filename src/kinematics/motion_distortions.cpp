@@ -151,6 +151,10 @@ void MotionStages::undo_clock_drift() {
 }
 
 void MotionStages::find_friction_filter() {
+  if (options_.friction_low_pass) {
+    motion_.friction_low_pass = *options_.friction_low_pass;
+    return;
+  }
   // Behind a filter of the velocity that is not undone re-stick is somewhere else, where the contact creeps friction
   // goes on to change as the contact does, however little that is.
   const bool rests = low_pass_.rise < kKinkCreeps * kKinkSeen;

@@ -162,7 +162,8 @@ SimulatedMotion simulate(const Rig& rig, const Drive& drive, const FrictionModel
 
 double settling_time(const Rig& rig, const Drive& drive, std::span<const double> p) {
   const double disc = std::abs(drive.radius * drive.speed.speed(0));
-  const double winding = disc > 0 ? 2 * p[0] * drive.mean_load / (rig.stiffness * disc) : 0;
+  const double load = drive.load ? drive.load(0) : drive.mean_load;
+  const double winding = disc > 0 ? 2 * p[0] * load / (rig.stiffness * disc) : 0;
   return 5 * winding + 10 * 2 * std::numbers::pi / rig.natural_frequency();
 }
 

@@ -100,4 +100,13 @@ inline constexpr double kRoundingOfWay = 1e-9;
 /// Intervals beside the samples of a corner within which the lines must meet: farther off one of them is no line.
 inline constexpr double kNearCorner = 2;
 
+// ---- noise about parabolas
+
+/// Correlation of neighbours that is still told from a wandering, and share of the variance that a parabola may have
+/// taken: more, and what is left says next to nothing of the noise.
+inline constexpr double kMostCorrelation = 0.97, kLargestShare = 0.75;
+/// Rounds to the correlation, and the change at which it is the same.
+inline constexpr int kMostRounds = 50;
+inline constexpr double kSameCorrelation = 1e-4;
+
 }  // namespace tribofit

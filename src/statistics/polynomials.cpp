@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+
+#include "limits.hpp"
 
 namespace tribofit {
 
@@ -95,6 +98,39 @@ Remainder remainder_about(const Parabola& parabola, std::span<const double> samp
     last = residual;
   }
   return {squares, products, static_cast<double>(samples.size()), last};
+}
+
+double share_of_parabola(std::size_t samples, double correlation) {
+  Parabola through;
+  through.count = static_cast<double>(samples);
+  const double shift = through.shift(), norms[] = {through.count, through.line_norm(), through.curvature_norm()};
+  double carried[3] = {}, variances[3] = {};  // of the three coefficients, by the neighbours before
+  for (std::size_t i = 0; i < samples; ++i) {
+    const double x = static_cast<double>(i) - through.centre(), columns[] = {1, x, x * x - shift};
+    for (std::size_t k = 0; k < std::min<std::size_t>(3, samples); ++k) {
+      carried[k] *= correlation;
+      variances[k] += columns[k] * (columns[k] + 2 * carried[k]) / norms[k];
+      carried[k] += columns[k];
+    }
+  }
+  return std::clamp((variances[0] + variances[1] + variances[2]) / through.count, 0.0, 1.0);
+}
+
+CorrelatedNoise noise_about_parabolas(const Remainder& all, double stretches) {
+  const double pairs = all.count - stretches;
+  if (!(all.squares > 0) || !(pairs > 0)) return {};
+  const auto length = static_cast<std::size_t>(std::lround(all.count / stretches));
+  const double variance = all.squares / all.count, left = all.products / pairs / variance;
+  CorrelatedNoise noise;
+  double share = 0, before = -1;
+  // From below to the fixed point.
+  for (int round = 0; round < kMostRounds && std::abs(noise.correlation - before) > kSameCorrelation; ++round) {
+    before = noise.correlation;
+    noise.correlation = std::clamp(left + share * (1 - left), 0.0, kMostCorrelation);
+    share = std::min(share_of_parabola(length, noise.correlation), kLargestShare);
+  }
+  noise.deviation = std::sqrt(variance / (1 - share));
+  return noise;
 }
 
 double peak_between(double before, double middle, double after) {

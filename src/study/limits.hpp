@@ -79,10 +79,6 @@ inline constexpr double kMostScatterCorrelation = 0.9, kMostNoiseCorrelation = 0
 /// Points a natural period on which recorded load, temperature and disc speed are followed: what is faster is noise.
 inline constexpr double kConditionsAPeriod = 50;
 
-/// Samples of a stick and sticks that are read for the correlation of noise, and fewest samples that show one: the
-/// correlation is then known to 1 %, and a straight line takes little of it.
-inline constexpr std::size_t kNoisePiece = 400, kNoiseSticks = 50, kFewestNoise = 20;
-
 /// Cycles that show a correlation of break-away.
 inline constexpr std::size_t kFewestLevels = 10;
 

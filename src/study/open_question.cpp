@@ -144,6 +144,7 @@ RecordToContinue record_of(const Identification& trace, const IdentifiedMachine&
   out.noise = noise_of_record(trace.motion, trace.segmentation, fit.floor);
   out.scatter = machine.scatter;
   out.rate = 1 / trace.motion.step;
+  out.reference_load = fit.mean_load;
   const double slip = trace.segmentation.slip_time.value;
   out.simulated_rate = slip > 0 ? kSamplesOfSlip / slip : out.rate;
   return out;
@@ -191,7 +192,7 @@ OpenQuestion open_question(const DiagnosedTraces& diagnosed, const PlanOptions& 
     question.machines[k] = identified_machine(own, rig, trace.motion, trace.segmentation);
     model.reason = question.machines[k].reason;
     if (model.reason.empty()) {
-      question.draws[k] = PlausibleDraws(question.machines[k], {&trace.motion, &trace.segmentation});
+      question.draws[k] = PlausibleDraws(question.machines[k], {&trace.motion, &trace.segmentation}, own);
     }
   });
   for (const ModelInQuestion& model : question.models) {

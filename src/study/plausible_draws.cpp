@@ -106,12 +106,15 @@ std::vector<std::vector<double>> walkers_about(const std::vector<double>& least,
 
 }  // namespace
 
-PlausibleDraws::PlausibleDraws(const IdentifiedMachine& known, const Record& record) : known_(known) {
+PlausibleDraws::PlausibleDraws(const IdentifiedMachine& known, const Record& record, const Fit& fit)
+    : known_(known) {
   const Machine& machine = known_.machine;
   const std::vector<double>& least = machine.parameters;
   const std::size_t slips = std::max<std::size_t>(1, record.segmentation->cycles.size());
-  const Observations observations = observe(*record.motion, *record.segmentation, machine.model.needs(),
-                                            std::clamp(kValuesOfPlausible / slips, kFewestOfSlip, kMostOfSlip));
+  Observations observations = observe(*record.motion, *record.segmentation, machine.model.needs(),
+                                      std::clamp(kValuesOfPlausible / slips, kFewestOfSlip, kMostOfSlip));
+  observations.mean_load = fit.mean_load;
+  observations.mean_temperature = fit.mean_temperature;
   const Coordinates coordinates(machine.model, observations, least);
   ModelResiduals residuals(machine.model, observations, all_slips(observations));
   const ModelResiduals::Whitening whitening = residuals.whitening_at(least.data());

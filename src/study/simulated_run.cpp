@@ -4,28 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "fit/errors.hpp"
 #include "limits.hpp"
-#include "tribofit/statistics/polynomials.hpp"
 
 namespace tribofit {
 
 namespace {
-
-/// Correlation of the noise on friction from sample to sample: about straight lines through pieces of the sticks.
-double noise_colour(const Motion& motion, const Segmentation& segmentation) {
-  Remainder all;
-  std::size_t used = 0;
-  for (const Cycle& cycle : segmentation.cycles) {
-    const std::size_t n = std::min(kNoisePiece, cycle.stick.size() / 2);
-    if (n < kFewestNoise || ++used > kNoiseSticks) continue;
-    const std::span<const double> piece =
-        std::span(motion.friction).subspan(cycle.stick.begin + cycle.stick.size() / 4, n);
-    Parabola line = fit_parabola(piece);
-    line.curvature = 0;
-    all += remainder_about(line, piece);
-  }
-  return all.correlation(kMostNoiseCorrelation);
-}
 
 /// How the disc is driven in a run.
 SpeedProfile speed_of_run(const RunConditions& run) {
@@ -79,8 +63,10 @@ Motion motion_of(Trace trace, const SimulatedMotion& moved, const Sensors& senso
 Sensors noise_of_record(const Motion& motion, const Segmentation& segmentation, const Floor& floor) {
   Sensors sensors;
   sensors.friction_noise = floor.noise;
-  sensors.velocity_noise = motion.velocity_noise;
-  sensors.noise_colour = noise_colour(motion, segmentation);
+  const CorrelatedNoise of_velocity = noise_in_sticks(motion.relative_velocity, motion, segmentation);
+  sensors.velocity_noise = std::max(motion.velocity_noise, of_velocity.deviation);
+  sensors.noise_colour =
+      std::min(noise_in_sticks(motion.friction, motion, segmentation).correlation, kMostNoiseCorrelation);
   return sensors;
 }
 
@@ -102,9 +88,10 @@ SimulatedRun simulate_run(Machine machine, const RunConditions& run, const Recor
                           std::uint64_t seed) {
   const Motion& measured = *record.motion;
   const bool force = measured.friction_kind == FrictionKind::force;
+  const bool load_known = !force && run.load > 0 && machine.load > 0 && measured.conditions.load.known();
+  if (load_known) machine.load = run.load;
   machine.radius = run.radius;
   machine.speed = run.speed;
-  if (!force && run.load > 0 && machine.load > 0 && measured.conditions.load.known()) machine.load = run.load;
   if (run.stiffness > 0) {
     machine.rig.damping *= std::sqrt(run.stiffness / machine.rig.stiffness);  // the damping ratio stays
     machine.rig.stiffness = run.stiffness;
@@ -113,6 +100,11 @@ SimulatedRun simulate_run(Machine machine, const RunConditions& run, const Recor
 
   Drive drive = machine.drive();
   drive.speed = speed_of_run(run);
+  // The disc is pressed with the load of the run, which is not the one that the parameters refer to.
+  if (load_known && record.reference_load > 0) {
+    drive.mean_load = record.reference_load;
+    drive.load = [load = machine.load](double) { return load; };
+  }
   SimulationOptions options;
   options.duration = run.duration;
   const double enough =
@@ -129,6 +121,7 @@ SimulatedRun simulate_run(Machine machine, const RunConditions& run, const Recor
   const SimulatedMotion moved = simulate(machine.rig, drive, machine.model, machine.parameters, options);
   Trace trace = tribofit::record(moved, machine.model, machine.parameters, sensors).trace;
   trace.path = "simulated run";
+  if (measured.load.empty()) trace.load.clear();
   if (force) trace.friction_kind = FrictionKind::force;
   const Condition& load = measured.conditions.load;
   trace.conditions.load = load.known() ? Condition{force ? load.value : machine.load, "plan"} : Condition{};

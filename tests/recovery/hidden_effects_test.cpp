@@ -192,4 +192,33 @@ TEST(HiddenEffects, UpperBoundOfARateIsThatOfTheBinomial) {
   EXPECT_EQ(upper_bound_95(10, 10), 1);
 }
 
+// The force sensor of two runs is one. Where some slips show that it is a low-pass and others, for noise, do not, each
+// record had its own, and nothing or the filter twice was named.
+TEST(SeveralRuns, AFilterThatOneOfThemHidesIsNamedOnce) {
+  for (const std::uint64_t seed : {4u, 6u}) {
+    PlanOptions plan;
+    plan.runs = 1;
+    plan.seed = seed;
+    const std::vector<Case> cases = slice(Kind::single, plan);
+    const auto at = std::find_if(cases.begin(), cases.end(),
+                                 [](const Case& c) { return c.hidden.front().key == "force-bandwidth"; });
+    ASSERT_NE(at, cases.end());
+    Case c = *at;
+    c.hidden.front().values = {100, 0.75};
+    c.length = 0.3;
+    c.noise = 4;
+    const recovery::Run longer = {.setting = Setting::fast, .duration = 10 / c.length};
+    const Simulated all = simulate_case(c, {{3, longer}, {}});
+    for (std::size_t k = 1; k < all.traces.size(); ++k) {
+      Simulated both = all;
+      both.traces = {all.traces[0], all.traces[k]};
+      const std::vector<Name> names = names_of(diagnose_case(both).diagnosis);
+      ASSERT_EQ(names.size(), 1) << "seed " << seed << ", run " << k;
+      std::vector<std::string> keys = names[0].equivalent;
+      keys.push_back(names[0].added);
+      EXPECT_EQ(std::count(keys.begin(), keys.end(), "force-bandwidth"), 1) << "seed " << seed << ", run " << k;
+    }
+  }
+}
+
 }  // namespace

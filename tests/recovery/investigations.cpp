@@ -131,7 +131,7 @@ struct Bench {
                            .stiffness = std::abs(run.stiffness - own.stiffness) < 1e-6 * own.stiffness
                                             ? 1
                                             : run.stiffness / c.rig.stiffness,
-                           .load = run.load / own.load,
+                           .load = run.load / c.load,
                            .more_mass = run.mass_below,
                            .reversing = run.reversing,
                            .pauses = run.pauses});

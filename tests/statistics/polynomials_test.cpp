@@ -166,5 +166,32 @@ TEST(SavitzkyGolay, AveragesNoise) {
   EXPECT_NEAR(squares / static_cast<double>(y.size()), 1.0 / 110, 0.05 / 110);
 }
 
+// An autoregression of known spread; a parabola takes a quarter and more of its variance from short stretches.
+TEST(NoiseAboutParabolas, GivesSpreadAndCorrelationBack) {
+  std::mt19937_64 engine(5);
+  std::normal_distribution<double> normal;
+  for (const double correlation : {0.0, 0.5, 0.9}) {
+    for (const std::size_t length : {60u, 200u}) {
+      constexpr std::size_t kStretches = 3000;
+      Remainder all;
+      double level = normal(engine);
+      for (std::size_t k = 0; k < kStretches; ++k) {
+        std::vector<double> stretch(length);
+        for (double& x : stretch) {
+          level = correlation * level + std::sqrt(1 - correlation * correlation) * normal(engine);
+          x = 3 + 2 * level;
+        }
+        all += remainder_about(fit_parabola(stretch), stretch);
+      }
+      const double taken = 1 - all.squares / all.count / 4;
+      EXPECT_NEAR(share_of_parabola(length, correlation), taken, 0.03) << correlation << " " << length;
+      const CorrelatedNoise noise = noise_about_parabolas(all, kStretches);
+      EXPECT_NEAR(noise.deviation, 2, length == 200 ? 0.03 : 0.1) << correlation << " " << length;
+      EXPECT_NEAR(noise.correlation, correlation, 0.01) << correlation << " " << length;
+    }
+  }
+  EXPECT_EQ(noise_about_parabolas({}, 0).deviation, 0);
+}
+
 }  // namespace
 }  // namespace tribofit

@@ -12,12 +12,14 @@
 #include "fit/model_residuals.hpp"
 #include "study/open_question.hpp"
 #include "study/plausible_draws.hpp"
+#include "study/simulated_run.hpp"
 #include "study/weighing.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/oscillator/presets.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
 #include "tribofit/pipeline.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/study/uncertainty.hpp"
 
 namespace tribofit {
@@ -62,6 +64,13 @@ std::vector<std::string> names_of(const RunPlan& plan) {
   std::vector<std::string> names;
   for (const ModelInQuestion& model : plan.models) names.push_back(model.name);
   return names;
+}
+
+/// Friction at break-away.
+double break_away_of(const Segmentation& segmentation) {
+  std::vector<double> levels;
+  for (const Cycle& cycle : segmentation.cycles) levels.push_back(cycle.break_away_friction);
+  return median(levels);
 }
 
 /// A lag that these few cycles do not distinguish from a delay or a filter of the reading.
@@ -201,7 +210,7 @@ TEST(Plan, MachinesAreDrawnThatDescribeTheRecord) {
   const RigFit rig = rig_beside(fit, trace.motion, trace.segmentation);
   const IdentifiedMachine known = identified_machine(fit, rig, trace.motion, trace.segmentation);
   ASSERT_EQ(known.reason, "");
-  const PlausibleDraws draws(known, record);
+  const PlausibleDraws draws(known, record, fit);
   const Observations observations = observe(trace.motion, trace.segmentation, model.needs(), 40);
   ModelResiduals residuals(model, observations, all_slips(observations));
   const ModelResiduals::Whitening whitening = residuals.whitening_at(known.machine.parameters.data());
@@ -223,6 +232,28 @@ TEST(Plan, MachinesAreDrawnThatDescribeTheRecord) {
   EXPECT_GT(by_covariance, 5 * mean);
   EXPECT_GT(lengths.size(), 50U);
   EXPECT_GT(*lengths.rbegin(), 1.5 * *lengths.begin());  // and they differ
+}
+
+/// mu (N/N0)^-p of a run is of N0 of the record: at half the load all friction is 2^p times as much.
+TEST(Plan, ARunAtAnotherLoadIsOfTheSameContact) {
+  const PublishedTest test = published_test(0.015, ExponentialLaw{});
+  const FrictionModel model(ExponentialLaw{}, {make_effect("load-dependence")});
+  std::vector<double> p = test.friction;
+  p.push_back(0.2);
+  const Machine machine{test.rig, model, p, test.load, test.radius, test.speed};
+  RecordToContinue record;
+  record.motion = &open_lag().traces[0].motion;
+  record.rate = record.simulated_rate = 4000;
+  record.reference_load = test.load;
+  const auto level = [&](double load) {
+    const SimulatedRun run = simulate_run(
+        machine, {.radius = test.radius, .speed = test.speed, .load = load, .duration = 3, .rate = 4000}, record, 1);
+    EXPECT_EQ(run.motion.conditions.load.value, load);
+    EXPECT_TRUE(run.motion.load.empty());  // the record has no channel of it
+    return break_away_of(run.segmentation);
+  };
+  EXPECT_NEAR(level(test.load), p[0], 0.002 * p[0]);
+  EXPECT_NEAR(level(0.5 * test.load), std::pow(2, 0.2) * p[0], 0.002 * p[0]);
 }
 
 }  // namespace

@@ -138,6 +138,8 @@ struct MotionOptions {
   bool undo_bandwidth = true;
   PlateauCorrection plateau = PlateauCorrection::none;
   StickRule stick = {};
+  /// Of the friction channel, as other runs of the sensor show it [s]; nothing: looked for in this one.
+  std::optional<UndoneDistortion> friction_low_pass = {};
 };
 
 /// Computes the motion: declared instrument corrections first, then high-pass, zero and speed, v_r, health. Samples

@@ -65,6 +65,18 @@ Remainder remainder_about(const Parabola& parabola, std::span<const double> samp
 /// is the largest; 0 where it has none.
 double peak_between(double before, double middle, double after);
 
+/// Noise whose neighbours are correlated, and by its powers over more samples.
+struct CorrelatedNoise {
+  double deviation = 0, correlation = 0;
+};
+
+/// Share of the variance of such noise that a parabola through `samples` of it takes, 0 to 1. Cost: linear.
+double share_of_parabola(std::size_t samples, double correlation);
+
+/// The noise of which parabolas through `stretches` stretches of like length left `all`: what they took with them makes
+/// it smaller and less correlated, differences between neighbours are as they were.
+CorrelatedNoise noise_about_parabolas(const Remainder& all, double stretches);
+
 /// Weights of the samples of a window whose sum of products is the slope of their parabola of least squares at one of
 /// them, `left` samples behind the first and `right` before the last [1/sample] (A. Savitzky, M. J. E. Golay, Anal.
 /// Chem. 36 (1964) 1627, doi:10.1021/ac60214a047). left + right >= 2.
