@@ -94,9 +94,10 @@ void share_friction_filter(std::vector<PreparedTrace>& traces) {
     prepared->motion.friction_low_pass = is_filter ? shared : UndoneDistortion{};
     prepared->trace = prepared->prepare(prepared->motion);
     prepared->trace.motion.notes.push_back(
-        is_filter ? fmt::format("friction: a low-pass at {:.3g} Hz, as in the other runs; each law is filtered the same way",
-                                1 / (2 * std::numbers::pi * shared.value))
-                  : "friction: it seems to be read through a low-pass, which the other runs do not show; not taken");
+        is_filter
+            ? fmt::format("friction: a low-pass at {:.3g} Hz, as in the other runs; each law is filtered the same way",
+                          1 / (2 * std::numbers::pi * shared.value))
+            : "friction: it seems to be read through a low-pass, which the other runs do not show; not taken");
     remove_load_coupling(prepared->trace);
   }
 }

@@ -7,22 +7,32 @@
 
 #include "fit/assessment.hpp"
 #include "kinematics/corrections.hpp"
+#include "tribofit/fit/observations.hpp"
 #include "tribofit/friction/evaluate.hpp"
 
 namespace tribofit {
 namespace {
 
-/// Correlation of break-away from cycle to cycle, of what is scatter in it; 0 where there are too few cycles.
-double wander_of(const Segmentation& segmentation, double scatter) {
-  std::vector<double> levels;
-  for (const Cycle& cycle : segmentation.cycles) {
-    if (cycle.stick.size() > 0 && std::isfinite(cycle.break_away_friction)) levels.push_back(cycle.break_away_friction);
+/// Correlation of break-away from cycle to cycle, of what is scatter in it: about the levels that the fit expects,
+/// since a trend that it explains is none. 0 where there are too few cycles.
+double wander_of(const Fit& fit, const Motion& motion, const Segmentation& segmentation) {
+  const double scatter = fit.floor.scatter;
+  if (!(scatter > 0)) return 0;
+  Observations observations = observe(motion, segmentation, fit.model.needs(), kFewestOfSlip);
+  observations.mean_load = fit.mean_load;
+  observations.mean_temperature = fit.mean_temperature;
+  const std::vector<double> p = fit.values();
+  std::vector<double> off;
+  for (const auto& slip : observations.slips) {
+    const double level = slip.read_at_break_away(fit.model.acts_in_stick());
+    if (!slip.from_stick || !std::isfinite(level)) continue;
+    off.push_back(level - break_away_level(fit.model, p.data(), observations.slip(slip)));
   }
-  const std::size_t n = levels.size();
-  if (n < kFewestLevels || !(scatter > 0)) return 0;
+  const std::size_t n = off.size();
+  if (n < kFewestLevels) return 0;
   double mean = 0, products = 0;
-  for (const double x : levels) mean += x / static_cast<double>(n);
-  for (std::size_t i = 1; i < n; ++i) products += (levels[i] - mean) * (levels[i - 1] - mean);
+  for (const double x : off) mean += x / static_cast<double>(n);
+  for (std::size_t i = 1; i < n; ++i) products += (off[i] - mean) * (off[i - 1] - mean);
   return std::clamp(products / static_cast<double>(n - 1) / (scatter * scatter), 0.0, kMostScatterCorrelation);
 }
 
@@ -102,7 +112,7 @@ IdentifiedMachine identified_machine(const Fit& fit, const RigFit& rig, const Mo
     out.machine.rig.mass += rig.per_unit_load ? below / rig.load : below;
     out.notes.push_back("the mass that the law finds below the force sensor is added to that of the rig");
   }
-  out.scatter = {fit.floor.scatter, wander_of(segmentation, fit.floor.scatter)};
+  out.scatter = {fit.floor.scatter, wander_of(fit, motion, segmentation)};
   return out;
 }
 

@@ -106,8 +106,7 @@ std::vector<std::vector<double>> walkers_about(const std::vector<double>& least,
 
 }  // namespace
 
-PlausibleDraws::PlausibleDraws(const IdentifiedMachine& known, const Record& record, const Fit& fit)
-    : known_(known) {
+PlausibleDraws::PlausibleDraws(const IdentifiedMachine& known, const Record& record, const Fit& fit) : known_(known) {
   const Machine& machine = known_.machine;
   const std::vector<double>& least = machine.parameters;
   const std::size_t slips = std::max<std::size_t>(1, record.segmentation->cycles.size());

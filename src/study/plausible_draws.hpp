@@ -18,8 +18,8 @@ namespace tribofit {
 class PlausibleDraws {
  public:
   PlausibleDraws() = default;
-  /// known: of `record`; fit: says to which load and temperature its parameters refer. Cost: several hundred passes over
-  /// some values of each slip.
+  /// known: of `record`; fit: says to which load and temperature its parameters refer. Cost: several hundred passes
+  /// over some values of each slip.
   PlausibleDraws(const IdentifiedMachine& known, const Record& record, const Fit& fit);
 
   /// One machine; the same for the same seed. Its rig is drawn by the covariance of its fit.

@@ -10,8 +10,8 @@
 
 namespace tribofit {
 
-/// Noise of the channels of a record as its sensors show it: standard deviations of friction (see Floor) and of v_b, and
-/// the correlation of friction in stick from sample to sample.
+/// Noise of the channels of a record as its sensors show it: standard deviations of friction (see Floor) and of v_b,
+/// and the correlation of friction in stick from sample to sample.
 Sensors noise_of_record(const Motion& motion, const Segmentation& segmentation, const Floor& floor);
 
 /// The same noise in means over `samples` neighbours.

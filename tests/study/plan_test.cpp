@@ -210,6 +210,7 @@ TEST(Plan, MachinesAreDrawnThatDescribeTheRecord) {
   const RigFit rig = rig_beside(fit, trace.motion, trace.segmentation);
   const IdentifiedMachine known = identified_machine(fit, rig, trace.motion, trace.segmentation);
   ASSERT_EQ(known.reason, "");
+  EXPECT_LT(known.scatter.wander, 0.4);  // break-away scatters by itself: that all of it falls is run-in
   const PlausibleDraws draws(known, record, fit);
   const Observations observations = observe(trace.motion, trace.segmentation, model.needs(), 40);
   ModelResiduals residuals(model, observations, all_slips(observations));
