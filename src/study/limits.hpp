@@ -108,6 +108,10 @@ inline constexpr std::size_t kRoundsToForget = 60, kRoundsOfDraws = 30;
 /// steepest direction, below which a valley counts as flat: the walkers find its length.
 inline constexpr double kFarthestStart = 8, kFlattestStart = 1e-3;
 
+/// Odds, before it is looked at, that a record lacks something that the catalogue has: of the eight records of other
+/// rigs in data/validation/real-rigs.md seven do (rule of succession). Even odds overstate that nothing is there.
+inline constexpr double kOddsOfSomething = 4;
+
 /// Cycles of a run: fewer show their scatter badly, more take time to diagnose and show little that is new.
 inline constexpr double kFewestPlannedCycles = 40, kMostPlannedCycles = 120;
 

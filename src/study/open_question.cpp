@@ -130,7 +130,7 @@ void weigh(const DiagnosedTraces& diagnosed, const PlanOptions& options, OpenQue
       weights[k] = std::exp(-std::clamp(now.effects[k].behind, 0.0, kMostBehind) / (2 * kTemper));
     }
   } else {
-    weights[1] = least_odds_of_nothing(question.p_value);
+    weights[1] = least_odds_of_nothing(question.p_value) / kOddsOfSomething;
   }
   double sum = 0;
   for (const double w : weights) sum += w;

@@ -12,9 +12,10 @@
 
 namespace tribofit {
 
-/// Processors of this machine, of which there is at least one.
+/// Processors of this machine, of which there is at least one. Asked for once: the system opens files to know.
 inline int available_threads() {
-  return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  static const int count = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  return count;
 }
 
 /// Runs task(0) ... task(count-1) on up to `threads` threads (0: as many as there are).

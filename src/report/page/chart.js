@@ -297,16 +297,23 @@ function isInView(item) {
   return box.bottom > 0 && box.top < innerHeight;
 }
 
-/** Draws what waits, what is in view first, one chart after the other so that the page stays alive. */
+const drawingTime = 50; // ms: a page that answers later than that feels slow
+
+/** Draws what waits, what is in view first. A few charts at a time, so that the page stays alive: one by one it would be
+ * laid out and painted as often. */
 function drawWaiting() {
   waiting = waiting.filter((item) => item.plot.isConnected);
-  if (waiting.length === 0) {
+  const inView = waiting.filter(isInView), began = performance.now();
+  for (const item of [...inView, ...waiting.filter((other) => !inView.includes(other))]) {
+    draw(item);
+    if (performance.now() - began > drawingTime) break;
+  }
+  if (waiting.length > 0) {
+    setTimeout(drawWaiting, 0);
+  } else {
     isDrawing = false;
     document.documentElement.dataset.drawn = "all";
-    return;
   }
-  draw(waiting.find(isInView) || waiting[0]);
-  setTimeout(drawWaiting, 0);
 }
 
 /** One button for each name: a line and its band go together. */
