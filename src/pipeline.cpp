@@ -135,19 +135,23 @@ DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOp
     options = with_declared_filter(given, prepare_trace(inputs.front(), given).motion);
   IdentifyOptions kinematic = options;
   kinematic.effects = kinematic_effects(options.effects);
-  const auto prepared = [&](const TraceInput& input) {
-    const auto again = [&](const MotionOptions& motion) { return prepare(input, kinematic, motion, Purpose::law); };
-    return diagnosis::prepare_to_diagnose(again, options);
+  const auto prepared = [&kinematic](const TraceInput& input, const IdentifyOptions& as) {
+    const auto again = [&kinematic, input](const MotionOptions& motion) {
+      return prepare(input, kinematic, motion, Purpose::law);
+    };
+    return diagnosis::prepare_to_diagnose(again, as);
   };
   std::vector<diagnosis::PreparedTrace> traces;
-  for (const TraceInput& input : inputs) traces.push_back(prepared(input));
+  for (const TraceInput& input : inputs) traces.push_back(prepared(input, options));
   const std::vector<std::string> copies = diagnosis::exclude_copies(traces);
   DiagnosedTraces out = diagnosis::diagnose_traces(std::move(traces), options, more.diagnosis);
   Identification& first = out.traces.front();
   first.warnings.insert(first.warnings.end(), copies.begin(), copies.end());
   if (options.effects.size() > given.effects.size()) first.notes.push_back(kFilterInModel);
   if (out.rungs.empty()) return out;
-  for (const TraceInput& input : more.confirm) diagnosis::add_confirmation(prepared(input).trace, out);
+  IdentifyOptions as_diagnosed = options;
+  as_diagnosed.motion.friction_low_pass = diagnosis::shared_friction_filter(out.traces);
+  for (const TraceInput& input : more.confirm) diagnosis::add_confirmation(prepared(input, as_diagnosed).trace, out);
   diagnosis::veto(out.diagnosis.confirmations, out.diagnosis);
   return out;
 }

@@ -21,6 +21,7 @@
 #include "instrument_limits.hpp"
 #include "kinematic_effects.hpp"
 #include "limits.hpp"
+#include "tribofit/ingest/units.hpp"
 #include "tribofit/segmentation/load_coupling.hpp"
 #include "tribofit/statistics/distributions.hpp"
 #include "unrecorded_load.hpp"
@@ -69,36 +70,41 @@ void remove_load_coupling(Identification& trace) {
   trace.load_coupling = kappa;
 }
 
-/// Of runs with one force sensor: it is a low-pass in all of them where most of their slips show it, and in none where
-/// they do not. Few cycles, or noise, show or hide it wrongly; and what laws are filtered by must not differ from run
-/// to run, or none describes all.
-void share_friction_filter(std::vector<PreparedTrace>& traces) {
-  std::vector<PreparedTrace*> with, without;
-  double cycles_with = 0, cycles = 0;
-  UndoneDistortion shared;
-  for (PreparedTrace& prepared : traces) {
-    const Identification& trace = prepared.trace;
-    if (!trace.analysed || trace.segmentation.kind != MotionKind::stick_slip) continue;
-    const auto own = static_cast<double>(trace.segmentation.cycles.size());
-    const UndoneDistortion& tau = trace.motion.friction_low_pass;
+/// Prepares a trace anew as its options say, with what follows from the record itself.
+void prepare_again(const Instruments& instruments, PreparedTrace& prepared) {
+  prepared.trace = prepared.prepare(prepared.motion);
+  correct_plateau(instruments, prepared);
+  remove_load_coupling(prepared.trace);
+}
+
+/// Of runs with one force sensor: it is a low-pass in all of them where most of the cycles that can show it do, and in
+/// none where they do not. Few cycles, or noise, show or hide it wrongly; and where some runs are read through a filter
+/// and others not, no law describes all.
+void share_friction_filter(const Instruments& instruments, std::vector<PreparedTrace>& traces) {
+  double cycles_with = 0, cycles = 0, sum = 0, variance = 0;
+  for (const PreparedTrace& prepared : traces) {
+    const Motion& motion = prepared.trace.motion;
+    if (!prepared.trace.analysed || motion.friction_filter_source != FilterSource::this_record) continue;
+    const auto own = static_cast<double>(prepared.trace.segmentation.cycles.size());
     cycles += own;
-    (tau.any() ? with : without).push_back(&prepared);
-    if (!tau.any()) continue;
+    if (!motion.friction_low_pass.any()) continue;
     cycles_with += own;
-    shared.value += (tau.value - shared.value) * own / cycles_with;
-    shared.std_error += (tau.std_error - shared.std_error) * own / cycles_with;
+    sum += own * motion.friction_low_pass.value;
+    variance += std::pow(own * motion.friction_low_pass.std_error, 2);
   }
-  const bool is_filter = cycles_with > limits::kMostOfCycles * cycles;
-  if (with.empty() || without.empty()) return;
-  for (PreparedTrace* prepared : is_filter ? without : with) {
-    prepared->motion.friction_low_pass = is_filter ? shared : UndoneDistortion{};
-    prepared->trace = prepared->prepare(prepared->motion);
-    prepared->trace.motion.notes.push_back(
-        is_filter
-            ? fmt::format("friction: a low-pass at {:.3g} Hz, as in the other runs; each law is filtered the same way",
-                          1 / (2 * std::numbers::pi * shared.value))
-            : "friction: it seems to be read through a low-pass, which the other runs do not show; not taken");
-    remove_load_coupling(prepared->trace);
+  if (cycles_with == 0) return;
+  const bool is_filter = cycles_with >= limits::kPartThatShowsFilter * cycles;
+  const UndoneDistortion shared =
+      is_filter ? UndoneDistortion{sum / cycles_with, std::sqrt(variance) / cycles_with} : UndoneDistortion{};
+  for (PreparedTrace& prepared : traces) {
+    const bool sticks = prepared.trace.analysed && prepared.trace.segmentation.kind == MotionKind::stick_slip;
+    if (!sticks || prepared.trace.motion.friction_low_pass.any() == is_filter) continue;
+    prepared.motion.friction_low_pass = shared;
+    prepare_again(instruments, prepared);
+    prepared.trace.notes.push_back(
+        is_filter ? fmt::format("friction: a low-pass at {}, as other runs show; each law is filtered the same way",
+                                frequency_text(1 / (2 * std::numbers::pi * shared.value), 3))
+                  : "friction: it seems to be read through a low-pass, which most of the runs do not show; not taken");
   }
 }
 
@@ -236,6 +242,13 @@ EffectRoles roles_of(const std::vector<Effect>& effects) {
   return roles;
 }
 
+std::optional<UndoneDistortion> shared_friction_filter(const std::vector<Identification>& traces) {
+  for (const Identification& trace : traces) {
+    if (trace.motion.friction_filter_source != FilterSource::unknown) return trace.motion.friction_low_pass;
+  }
+  return std::nullopt;
+}
+
 PreparedTrace prepare_to_diagnose(const PrepareTrace& prepare, const IdentifyOptions& options) {
   PreparedTrace prepared{prepare(options.motion), options.motion, prepare};
   reconsider_high_pass(options.instruments, prepared);
@@ -250,7 +263,7 @@ DiagnosedTraces diagnose_traces(std::vector<PreparedTrace> traces, const Identif
   const EffectRoles effects = roles_of(options.effects);
   out.analysed = all_can_be_diagnosed(options.effects, effects, traces);
   if (out.analysed) {
-    share_friction_filter(traces);
+    share_friction_filter(options.instruments, traces);
     DiagnosisOptions inner = given;
     inner.threads = options.threads;
     inner.from_the_start = effects.from_the_start;

@@ -34,6 +34,10 @@ Fit of_first_record(const Fit& joint);
 /// within every cycle is freed of it.
 PreparedTrace prepare_to_diagnose(const PrepareTrace& prepare, const IdentifyOptions& options);
 
+/// The low-pass of the force sensor that the traces of a diagnosis were read through (0: none), for others of that
+/// sensor; nothing where none of them shows whether there is one.
+std::optional<UndoneDistortion> shared_friction_filter(const std::vector<Identification>& traces);
+
 /// Leaves one of those that hold the same values: a copy of a record is no repeat of it. Returns what was left out.
 std::vector<std::string> exclude_copies(std::vector<PreparedTrace>& traces);
 

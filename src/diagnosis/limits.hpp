@@ -56,7 +56,9 @@ inline constexpr double kLeastGap = 0.004;    ///< of omega r: a pad is seldom s
 inline constexpr double kGapSigmas = 5;       ///< standard errors: plateaus of one record are not independent
 inline constexpr double kLargestRatio = 2.5;  ///< or its inverse: a diameter for a radius is two; beyond, another fault
 inline constexpr double kFallOfSag = 15;      ///< of chi-squared, by which a spin explains a sag: by chance once in 1e4
-inline constexpr double kMostOfCycles = 0.5;    ///< in runs that show a filter, for it to be one of all
+/// Part of the cycles from which on a filter that they show is one of all runs. Less: one short run that shows one
+/// wrongly filters all; more: a few that are too noisy to show it keep it from all.
+inline constexpr double kPartThatShowsFilter = 0.5;
 inline constexpr double kLeastCoupling = 0.01;  ///< kappa: a load that follows friction by less is left as it is
 
 // Whether a candidate is plausible.

@@ -34,11 +34,10 @@ Comparison compare_held_out(const Fit& first, const Fit& second) {
 
 namespace {
 
-/// The observations of a record as the fit means them: its parameters refer to its own N0 and T0.
+/// The observations of a record as the fit means them.
 Observations observed_for(const Fit& fit, const Motion& motion, const Segmentation& segmentation) {
   Observations out = observe_motion(motion, segmentation, sensor_noise(motion, segmentation), fit.model.needs());
-  out.mean_load = fit.mean_load;
-  out.mean_temperature = fit.mean_temperature;
+  refer_to_conditions_of(fit, out);
   return out;
 }
 

@@ -41,14 +41,17 @@ std::size_t noise_stretch(std::size_t samples);
 
 SensorNoise sensor_noise(const Motion& motion, const Segmentation& segmentation);
 
-/// Of a channel of the motion, about parabolas within the sticks; none where too little sticks.
-CorrelatedNoise noise_in_sticks(const std::vector<double>& channel, const Motion& motion,
-                                const Segmentation& segmentation);
+/// Noise of friction (SampleFault::friction) or v_r (SampleFault::velocity) about parabolas within the sticks; none
+/// where no stick is long enough.
+CorrelatedNoise noise_in_sticks(std::uint8_t channel, const Motion& motion, const Segmentation& segmentation);
 
 FlickerNoise flicker_noise(const Motion& motion, const Segmentation& segmentation);
 /// Writes the noise of a record to its observations, with what its slow part does to each slip: as much in every e-fold
 /// of time, from the slip to the record.
 void add_noise(const Motion& motion, const RecordNoise& noise, Observations& out);
+
+/// Parameters refer to N0 and T0 of their fit, whatever the record has that they are tried on.
+void refer_to_conditions_of(const Fit& fit, Observations& observations);
 
 /// observe() without noise but what weighs a break-away: enough to evaluate a model, not to fit one.
 Observations observe_motion(const Motion& motion, const Segmentation& segmentation, const SensorNoise& noise,

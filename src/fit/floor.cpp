@@ -44,9 +44,9 @@ CorrelatedNoise pooled_noise(const std::vector<Remainder>& parts) {
   return noise_about_parabolas(all, used);
 }
 
-bool is_spoilt(const Motion& motion, const SampleRange& samples) {
+bool is_spoilt(const Motion& motion, const SampleRange& samples, std::uint8_t channel = SampleFault::friction) {
   for (std::size_t i = samples.begin; i < samples.end; ++i) {
-    if (motion.has_fault(i, SampleFault::friction)) return true;
+    if (motion.has_fault(i, channel)) return true;
   }
   return false;
 }
@@ -54,7 +54,8 @@ bool is_spoilt(const Motion& motion, const SampleRange& samples) {
 constexpr std::size_t kStretches = 1000;  ///< enough to know a spread to 0.2 %
 
 /// Every stick without its ends, where the transients of re-stick and break-away are.
-std::vector<SampleRange> stick_stretches(const Motion& motion, const Segmentation& segmentation) {
+std::vector<SampleRange> stick_stretches(const Motion& motion, const Segmentation& segmentation,
+                                         std::uint8_t channel = SampleFault::friction) {
   std::vector<SampleRange> parts;
   for (const Cycle& cycle : segmentation.cycles) {
     const std::size_t margin = cycle.stick.size() / 8;
@@ -63,7 +64,7 @@ std::vector<SampleRange> stick_stretches(const Motion& motion, const Segmentatio
     const std::size_t pieces = std::max<std::size_t>(1, length / kLongestNoiseStretch);
     for (std::size_t k = 0; k < pieces; ++k) {
       const SampleRange piece{begin + k * length / pieces, begin + (k + 1) * length / pieces};
-      if (!is_spoilt(motion, piece)) parts.push_back(piece);
+      if (!is_spoilt(motion, piece, channel)) parts.push_back(piece);
     }
     if (parts.size() > kStretches) break;
   }
@@ -210,9 +211,9 @@ SensorNoise sensor_noise(const Motion& motion, const Segmentation& segmentation)
   return {pooled_noise(parts).deviation, sampling_error(motion, segmentation), in_stick ? "stick" : "slip"};
 }
 
-CorrelatedNoise noise_in_sticks(const std::vector<double>& channel, const Motion& motion,
-                                const Segmentation& segmentation) {
-  return pooled_noise(about_parabolas(channel, stick_stretches(motion, segmentation)));
+CorrelatedNoise noise_in_sticks(std::uint8_t channel, const Motion& motion, const Segmentation& segmentation) {
+  const std::vector<double>& values = channel == SampleFault::velocity ? motion.relative_velocity : motion.friction;
+  return pooled_noise(about_parabolas(values, stick_stretches(motion, segmentation, channel)));
 }
 
 RecordNoise noise_of(const Motion& motion, const Segmentation& segmentation, int threads) {

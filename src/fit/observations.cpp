@@ -235,6 +235,11 @@ Slip Observations::slip(const SlipObservation& range) const {
   return slip;
 }
 
+void refer_to_conditions_of(const Fit& fit, Observations& observations) {
+  observations.mean_load = fit.mean_load;
+  observations.mean_temperature = fit.mean_temperature;
+}
+
 std::vector<std::size_t> blocks_of(const Observations& observations, std::size_t count) {
   std::vector<std::size_t> record(observations.cycles, 0), cycles, before;
   for (const auto& slip : observations.slips) record[slip.cycle] = slip.record;

@@ -154,10 +154,10 @@ std::string undone_low_passes(const Motion& motion, std::size_t slips) {
                         frequency_text(corner_of(motion.velocity_low_pass), 3), slips);
   }
   if (motion.friction_low_pass.any()) {
-    text += fmt::format(
-        "; friction decays at re-stick as after a first-order low-pass at {}: each law is filtered the same "
-        "way",
-        frequency_text(corner_of(motion.friction_low_pass), 3));
+    const bool seen = motion.friction_filter_source != FilterSource::other_runs;
+    text += fmt::format("; {} a first-order low-pass at {}: each law is filtered the same way",
+                        seen ? "friction decays at re-stick as after" : "other runs show that friction is read through",
+                        frequency_text(corner_of(motion.friction_low_pass), 3));
   }
   return text;
 }

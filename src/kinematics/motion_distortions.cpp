@@ -19,6 +19,10 @@ void MotionStages::undo_distortions() {
   if (is_block() && search_.sticks && speed_is_constant()) {
     spoilt_->add_standstill(search_, final_level(search_.plateaus), trace_);
   }
+  if (options_.friction_low_pass) {
+    motion_.friction_low_pass = *options_.friction_low_pass;
+    motion_.friction_filter_source = FilterSource::other_runs;
+  }
   if (!trace_.velocity_std_error.empty()) return;  // the velocity was made from another channel
   if (range_ends_.velocity_slew > 0) return;       // nothing of this brings back what an amplifier did not follow
   undo_zero_drift();
@@ -151,10 +155,6 @@ void MotionStages::undo_clock_drift() {
 }
 
 void MotionStages::find_friction_filter() {
-  if (options_.friction_low_pass) {
-    motion_.friction_low_pass = *options_.friction_low_pass;
-    return;
-  }
   // Behind a filter of the velocity that is not undone re-stick is somewhere else, where the contact creeps friction
   // goes on to change as the contact does, however little that is.
   const bool rests = low_pass_.rise < kKinkCreeps * kKinkSeen;
@@ -162,6 +162,8 @@ void MotionStages::find_friction_filter() {
   if (!options_.undo_distortions || !is_known || instruments_.force_sensor.bandwidth) return;
   const FrictionLowPass found = find_friction_low_pass(trace_.friction, low_pass_.resticks, motion_.step, threads_);
   friction_fall_ = found.fall;
+  if (options_.friction_low_pass) return;
+  motion_.friction_filter_source = found.is_known ? FilterSource::this_record : FilterSource::unknown;
   const std::optional<Declared>& at_least = instruments_.force_sensor.bandwidth_at_least;
   if (at_least && 2 * std::numbers::pi * found.tau.value * at_least->value > 1) return;  // declared not to be there
   motion_.friction_low_pass = found.tau;

@@ -175,12 +175,12 @@ FrictionLowPass find_friction_low_pass(std::span<const double> friction, const s
   };
   const double tau = refined([&](double t) { return squares_left(tails, t, threads); });
   const Evidence evidence = evidence_of(tails, tau);
-  if (best == kTailFirst || !evidence.is_first_order) return {{}, 0, fall_at_restick(tails) * step};
+  if (best == kTailFirst || !evidence.is_first_order) return {true, {}, 0, fall_at_restick(tails) * step};
   std::vector<double> taus(tails.size());
   run_tasks(tails.size(), threads,
             [&](std::size_t k) { taus[k] = refined([&](double t) { return fit_decay(tails[k], t).squares; }); });
   const double scatter = kSigmaPerMad * median_absolute_deviation(taus, median(taus));
-  return {{tau * step, scatter / std::sqrt(static_cast<double>(taus.size())) * step}, evidence.early};
+  return {true, {tau * step, scatter / std::sqrt(static_cast<double>(taus.size())) * step}, evidence.early};
 }
 
 }  // namespace tribofit::kinematics

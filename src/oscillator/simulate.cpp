@@ -12,6 +12,15 @@
 
 namespace tribofit {
 
+namespace {
+
+/// Normal force as the drive begins [N], which scales the motion; N0 is what parameters refer to.
+double load_at_start(const Drive& drive) {
+  return drive.load ? drive.load(0) : drive.mean_load;
+}
+
+}  // namespace
+
 Simulation::Simulation(const Rig& rig, const Drive& drive, const FrictionModel& model, std::span<const double> p,
                        const SimulationOptions& options)
     : options_((check_simulation(rig, drive, model, p, options), options)),
@@ -24,9 +33,9 @@ Simulation::Simulation(const Rig& rig, const Drive& drive, const FrictionModel& 
   most_step_ = options_.max_step > 0 ? options_.max_step : period / 8;
   march_ = period / 16;
   // Speeds of a slip are about that of the block when the drop of friction is let go.
-  const double speed = drive.mean_load * p[0] / (rig.mass * setup_.natural_frequency);
+  const double speed = load_at_start(drive) * p[0] / (rig.mass * setup_.natural_frequency);
   absolute_tolerance_ = 0.1 * options_.tolerance * speed;
-  least_slip_ = 0.1 * drive.mean_load * p[0] / rig.stiffness;
+  least_slip_ = 0.1 * load_at_start(drive) * p[0] / rig.stiffness;
   time_ = -options_.settle;
   state_[1] = setup_.disc_velocity(time_);
   if (options_.start) {
@@ -162,8 +171,7 @@ SimulatedMotion simulate(const Rig& rig, const Drive& drive, const FrictionModel
 
 double settling_time(const Rig& rig, const Drive& drive, std::span<const double> p) {
   const double disc = std::abs(drive.radius * drive.speed.speed(0));
-  const double load = drive.load ? drive.load(0) : drive.mean_load;
-  const double winding = disc > 0 ? 2 * p[0] * load / (rig.stiffness * disc) : 0;
+  const double winding = disc > 0 ? 2 * p[0] * load_at_start(drive) / (rig.stiffness * disc) : 0;
   return 5 * winding + 10 * 2 * std::numbers::pi / rig.natural_frequency();
 }
 

@@ -102,11 +102,10 @@ inline constexpr double kNearCorner = 2;
 
 // ---- noise about parabolas
 
-/// Correlation of neighbours that is still told from a wandering, and share of the variance that a parabola may have
-/// taken: more, and what is left says next to nothing of the noise.
+/// Largest correlation of neighbours, and share of the variance that a parabola may have taken. Larger: what is left of
+/// a stretch says next to nothing of the noise, and a slow change of the contact is taken for it.
 inline constexpr double kMostCorrelation = 0.97, kLargestShare = 0.75;
-/// Rounds to the correlation, and the change at which it is the same.
-inline constexpr int kMostRounds = 50;
+/// Correlations that are the same.
 inline constexpr double kSameCorrelation = 1e-4;
 
 }  // namespace tribofit

@@ -1,5 +1,7 @@
 #include "tribofit/statistics/polynomials.hpp"
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -100,36 +102,53 @@ Remainder remainder_about(const Parabola& parabola, std::span<const double> samp
   return {squares, products, static_cast<double>(samples.size()), last};
 }
 
-double share_of_parabola(std::size_t samples, double correlation) {
+namespace {
+
+/// Expected residuals about the parabola of noise of variance one: mean of their squares, and of the products of
+/// neighbours. With the orthonormal columns Q of the parabola and the covariance C, of (I - QQ') C (I - QQ').
+struct ExpectedRemainder {
+  double squares = 1, products = 0;
+};
+
+ExpectedRemainder expected_about_parabola(std::size_t samples, double correlation) {
+  using Row = Eigen::RowVector3d;
   Parabola through;
   through.count = static_cast<double>(samples);
-  const double shift = through.shift(), norms[] = {through.count, through.line_norm(), through.curvature_norm()};
-  double carried[3] = {}, variances[3] = {};  // of the three coefficients, by the neighbours before
+  if (samples < 4) return {0, 0};
+  const Row norms(through.count, through.line_norm(), through.curvature_norm());
+  std::vector<Row> q(samples), cq(samples);
   for (std::size_t i = 0; i < samples; ++i) {
-    const double x = static_cast<double>(i) - through.centre(), columns[] = {1, x, x * x - shift};
-    for (std::size_t k = 0; k < std::min<std::size_t>(3, samples); ++k) {
-      carried[k] *= correlation;
-      variances[k] += columns[k] * (columns[k] + 2 * carried[k]) / norms[k];
-      carried[k] += columns[k];
-    }
+    const double x = static_cast<double>(i) - through.centre();
+    q[i] = Row(1, x, x * x - through.shift()).cwiseQuotient(norms.cwiseSqrt());
   }
-  return std::clamp((variances[0] + variances[1] + variances[2]) / through.count, 0.0, 1.0);
+  Row before = Row::Zero(), behind = Row::Zero();
+  for (std::size_t i = 0; i < samples; ++i) cq[i] = before = correlation * before + q[i];
+  for (std::size_t i = samples; i-- > 0;) cq[i] += correlation * behind, behind = correlation * behind + q[i];
+  Eigen::Matrix3d inner = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < samples; ++i) inner += q[i].transpose() * cq[i];
+  double products = 0;
+  for (std::size_t i = 1; i < samples; ++i) {
+    products += correlation - q[i].dot(cq[i - 1]) - q[i - 1].dot(cq[i]) + (q[i] * inner).dot(q[i - 1]);
+  }
+  return {std::max(0.0, 1 - inner.trace() / through.count), products / (through.count - 1)};
 }
+
+}  // namespace
 
 CorrelatedNoise noise_about_parabolas(const Remainder& all, double stretches) {
   const double pairs = all.count - stretches;
   if (!(all.squares > 0) || !(pairs > 0)) return {};
   const auto length = static_cast<std::size_t>(std::lround(all.count / stretches));
   const double variance = all.squares / all.count, left = all.products / pairs / variance;
-  CorrelatedNoise noise;
-  double share = 0, before = -1;
-  // From below to the fixed point.
-  for (int round = 0; round < kMostRounds && std::abs(noise.correlation - before) > kSameCorrelation; ++round) {
-    before = noise.correlation;
-    noise.correlation = std::clamp(left + share * (1 - left), 0.0, kMostCorrelation);
-    share = std::min(share_of_parabola(length, noise.correlation), kLargestShare);
+  double low = 0, high = kMostCorrelation;
+  while (high - low > kSameCorrelation) {
+    const double middle = 0.5 * (low + high);
+    const ExpectedRemainder expected = expected_about_parabola(length, middle);
+    (expected.products < left * expected.squares ? low : high) = middle;
   }
-  noise.deviation = std::sqrt(variance / (1 - share));
+  CorrelatedNoise noise;
+  noise.correlation = low;
+  noise.deviation = std::sqrt(variance / std::max(expected_about_parabola(length, low).squares, 1 - kLargestShare));
   return noise;
 }
 

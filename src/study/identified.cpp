@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "fit/assessment.hpp"
+#include "fit/errors.hpp"
 #include "kinematics/corrections.hpp"
 #include "tribofit/fit/observations.hpp"
 #include "tribofit/friction/evaluate.hpp"
@@ -19,8 +20,7 @@ double wander_of(const Fit& fit, const Motion& motion, const Segmentation& segme
   const double scatter = fit.floor.scatter;
   if (!(scatter > 0)) return 0;
   Observations observations = observe(motion, segmentation, fit.model.needs(), kFewestOfSlip);
-  observations.mean_load = fit.mean_load;
-  observations.mean_temperature = fit.mean_temperature;
+  refer_to_conditions_of(fit, observations);
   const std::vector<double> p = fit.values();
   std::vector<double> off;
   for (const auto& slip : observations.slips) {

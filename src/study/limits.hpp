@@ -108,8 +108,10 @@ inline constexpr std::size_t kRoundsToForget = 60, kRoundsOfDraws = 30;
 /// steepest direction, below which a valley counts as flat: the walkers find its length.
 inline constexpr double kFarthestStart = 8, kFlattestStart = 1e-3;
 
-/// Odds, before it is looked at, that a record lacks something that the catalogue has: of the eight records of other
-/// rigs in data/validation/real-rigs.md seven do (rule of succession). Even odds overstate that nothing is there.
+/// Odds, before the p-value, that an effect is there rather than nothing: a choice. Of the eight records of other rigs
+/// in data/validation/real-rigs.md seven are described by no law alone, so that even odds are not even; what the record
+/// lacks may still be a look-alike, which a full diagnosis of simulated runs counts. Larger: plans for an effect that
+/// is not there promise too much.
 inline constexpr double kOddsOfSomething = 4;
 
 /// Cycles of a run: fewer show their scatter badly, more take time to diagnose and show little that is new.

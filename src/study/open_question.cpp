@@ -145,6 +145,7 @@ RecordToContinue record_of(const Identification& trace, const IdentifiedMachine&
   out.scatter = machine.scatter;
   out.rate = 1 / trace.motion.step;
   out.reference_load = fit.mean_load;
+  out.reference_temperature = fit.mean_temperature;
   const double slip = trace.segmentation.slip_time.value;
   out.simulated_rate = slip > 0 ? kSamplesOfSlip / slip : out.rate;
   return out;

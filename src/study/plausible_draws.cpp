@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "fit/errors.hpp"
 #include "fit/model_residuals.hpp"
 #include "fit/starts.hpp"
 #include "limits.hpp"
@@ -112,8 +113,7 @@ PlausibleDraws::PlausibleDraws(const IdentifiedMachine& known, const Record& rec
   const std::size_t slips = std::max<std::size_t>(1, record.segmentation->cycles.size());
   Observations observations = observe(*record.motion, *record.segmentation, machine.model.needs(),
                                       std::clamp(kValuesOfPlausible / slips, kFewestOfSlip, kMostOfSlip));
-  observations.mean_load = fit.mean_load;
-  observations.mean_temperature = fit.mean_temperature;
+  refer_to_conditions_of(fit, observations);
   const Coordinates coordinates(machine.model, observations, least);
   ModelResiduals residuals(machine.model, observations, all_slips(observations));
   const ModelResiduals::Whitening whitening = residuals.whitening_at(least.data());

@@ -6,6 +6,7 @@
 
 #include "fit/errors.hpp"
 #include "limits.hpp"
+#include "statistics/reductions.hpp"
 
 namespace tribofit {
 
@@ -63,10 +64,9 @@ Motion motion_of(Trace trace, const SimulatedMotion& moved, const Sensors& senso
 Sensors noise_of_record(const Motion& motion, const Segmentation& segmentation, const Floor& floor) {
   Sensors sensors;
   sensors.friction_noise = floor.noise;
-  const CorrelatedNoise of_velocity = noise_in_sticks(motion.relative_velocity, motion, segmentation);
-  sensors.velocity_noise = std::max(motion.velocity_noise, of_velocity.deviation);
-  sensors.noise_colour =
-      std::min(noise_in_sticks(motion.friction, motion, segmentation).correlation, kMostNoiseCorrelation);
+  sensors.velocity_noise =
+      std::max(motion.velocity_noise, noise_in_sticks(SampleFault::velocity, motion, segmentation).deviation);
+  sensors.noise_colour = noise_in_sticks(SampleFault::friction, motion, segmentation).correlation;
   return sensors;
 }
 
@@ -104,6 +104,10 @@ SimulatedRun simulate_run(Machine machine, const RunConditions& run, const Recor
   if (load_known && record.reference_load > 0) {
     drive.mean_load = record.reference_load;
     drive.load = [load = machine.load](double) { return load; };
+  }
+  if (!measured.temperature.empty()) {
+    drive.mean_temperature = record.reference_temperature;
+    drive.temperature = [mean = mean_of(measured.temperature)](double) { return mean; };
   }
   SimulationOptions options;
   options.duration = run.duration;

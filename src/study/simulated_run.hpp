@@ -11,7 +11,7 @@
 namespace tribofit {
 
 /// Noise of the channels of a record as its sensors show it: standard deviations of friction (see Floor) and of v_b,
-/// and the correlation of friction in stick from sample to sample.
+/// and the correlation of friction in stick from sample to sample, which stands for both channels as Sensors has one.
 Sensors noise_of_record(const Motion& motion, const Segmentation& segmentation, const Floor& floor);
 
 /// The same noise in means over `samples` neighbours.
@@ -24,7 +24,8 @@ struct RecordToContinue {
   BreakAwayScatter scatter;
   double rate = 0;            ///< of its samples [Hz]
   double simulated_rate = 0;  ///< highest rate that is simulated [Hz]: what is faster is averaged, and shows no more
-  double reference_load = 0;  ///< N0 to which the parameters of the models refer [N]; 0: the load of the machine
+  /// N0 [N] and T0 [degC] to which the parameters of the models refer; 0 N: the load of the machine.
+  double reference_load = 0, reference_temperature = 0;
 };
 
 /// A run of a machine as the stages before any fit have it.

@@ -195,6 +195,7 @@ TEST(HiddenEffects, UpperBoundOfARateIsThatOfTheBinomial) {
 // The force sensor of two runs is one. Where some slips show that it is a low-pass and others, for noise, do not, each
 // record had its own, and nothing or the filter twice was named.
 TEST(SeveralRuns, AFilterThatOneOfThemHidesIsNamedOnce) {
+  int given = 0, taken = 0;
   for (const std::uint64_t seed : {4u, 6u}) {
     PlanOptions plan;
     plan.runs = 1;
@@ -212,13 +213,25 @@ TEST(SeveralRuns, AFilterThatOneOfThemHidesIsNamedOnce) {
     for (std::size_t k = 1; k < all.traces.size(); ++k) {
       Simulated both = all;
       both.traces = {all.traces[0], all.traces[k]};
-      const std::vector<Name> names = names_of(diagnose_case(both).diagnosis);
+      const tribofit::DiagnosedTraces diagnosed = diagnose_case(both);
+      EXPECT_EQ(diagnosed.traces[0].motion.friction_low_pass.any(), diagnosed.traces[1].motion.friction_low_pass.any());
+      for (const tribofit::Identification& trace : diagnosed.traces) {
+        const bool is_other = trace.motion.friction_filter_source == tribofit::FilterSource::other_runs;
+        const bool is_said = std::any_of(trace.notes.begin(), trace.notes.end(), [](const std::string& note) {
+          return note.find("friction: ") == 0 && note.find("low-pass") != std::string::npos;
+        });
+        EXPECT_EQ(is_other, is_said) << "seed " << seed << ", run " << k;
+        (trace.motion.friction_low_pass.any() ? given : taken) += is_other ? 1 : 0;
+      }
+      const std::vector<Name> names = names_of(diagnosed.diagnosis);
       ASSERT_EQ(names.size(), 1) << "seed " << seed << ", run " << k;
       std::vector<std::string> keys = names[0].equivalent;
       keys.push_back(names[0].added);
       EXPECT_EQ(std::count(keys.begin(), keys.end(), "force-bandwidth"), 1) << "seed " << seed << ", run " << k;
     }
   }
+  EXPECT_GT(given, 0);
+  EXPECT_GT(taken, 0);
 }
 
 }  // namespace

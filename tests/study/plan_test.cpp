@@ -235,26 +235,53 @@ TEST(Plan, MachinesAreDrawnThatDescribeTheRecord) {
   EXPECT_GT(*lengths.rbegin(), 1.5 * *lengths.begin());  // and they differ
 }
 
+/// A contact with one effect, and the record from which a run of it goes on.
+struct Contact {
+  Machine machine;
+  RecordToContinue record;
+};
+
+Contact contact_with(const std::string& effect, double value) {
+  const PublishedTest test = published_test(0.015, ExponentialLaw{});
+  std::vector<double> p = test.friction;
+  p.push_back(value);
+  Contact out;
+  out.machine = {test.rig,  FrictionModel(ExponentialLaw{}, {make_effect(effect)}), p, test.load, test.radius,
+                 test.speed};
+  out.record.motion = &open_lag().traces[0].motion;
+  out.record.rate = out.record.simulated_rate = 4000;
+  out.record.reference_load = test.load;
+  return out;
+}
+
+/// Friction at break-away in a run of it.
+double break_away_of(const Contact& contact, double load) {
+  const Machine& machine = contact.machine;
+  const SimulatedRun run = simulate_run(
+      machine, {.radius = machine.radius, .speed = machine.speed, .load = load, .duration = 3, .rate = 4000},
+      contact.record, 1);
+  EXPECT_EQ(run.motion.conditions.load.value, load);
+  EXPECT_EQ(run.motion.load.size(), contact.record.motion->load.size());
+  return break_away_of(run.segmentation);
+}
+
 /// mu (N/N0)^-p of a run is of N0 of the record: at half the load all friction is 2^p times as much.
 TEST(Plan, ARunAtAnotherLoadIsOfTheSameContact) {
-  const PublishedTest test = published_test(0.015, ExponentialLaw{});
-  const FrictionModel model(ExponentialLaw{}, {make_effect("load-dependence")});
-  std::vector<double> p = test.friction;
-  p.push_back(0.2);
-  const Machine machine{test.rig, model, p, test.load, test.radius, test.speed};
-  RecordToContinue record;
-  record.motion = &open_lag().traces[0].motion;
-  record.rate = record.simulated_rate = 4000;
-  record.reference_load = test.load;
-  const auto level = [&](double load) {
-    const SimulatedRun run = simulate_run(
-        machine, {.radius = test.radius, .speed = test.speed, .load = load, .duration = 3, .rate = 4000}, record, 1);
-    EXPECT_EQ(run.motion.conditions.load.value, load);
-    EXPECT_TRUE(run.motion.load.empty());  // the record has no channel of it
-    return break_away_of(run.segmentation);
-  };
-  EXPECT_NEAR(level(test.load), p[0], 0.002 * p[0]);
-  EXPECT_NEAR(level(0.5 * test.load), std::pow(2, 0.2) * p[0], 0.002 * p[0]);
+  const Contact contact = contact_with("load-dependence", 0.2);
+  const double load = contact.machine.load, mu_s = contact.machine.parameters[0];
+  EXPECT_NEAR(break_away_of(contact, load), mu_s, 0.002 * mu_s);
+  EXPECT_NEAR(break_away_of(contact, 0.5 * load), std::pow(2, 0.2) * mu_s, 0.002 * mu_s);
+}
+
+/// Parameters of several records refer to the mean of their temperatures, a run is as warm as its own record.
+TEST(Plan, ARunIsAsWarmAsItsRecord) {
+  Contact contact = contact_with("temperature-dependence", -0.005);
+  Motion warm = *contact.record.motion;
+  warm.temperature.assign(warm.size(), 60);
+  contact.record.motion = &warm;
+  contact.record.reference_temperature = 40;
+  const double mu_s = contact.machine.parameters[0];
+  EXPECT_NEAR(break_away_of(contact, contact.machine.load), (1 - 0.005 * 20) * mu_s, 0.002 * mu_s);
 }
 
 }  // namespace

@@ -36,6 +36,13 @@ struct UndoneDistortion {
   bool any() const { return value != 0; }
 };
 
+/// Which records say whether the friction channel is a low-pass.
+enum class FilterSource {
+  unknown,      ///< it was not looked for, or too little re-sticks to show it
+  this_record,  ///< its re-sticks show one, or none
+  other_runs    ///< other runs of the same sensor do
+};
+
 /// Bits of Motion::faults. The motion is not known in a stretch: the cycles that reach into it are not used.
 struct SampleFault {
   static constexpr std::uint8_t friction = 1, velocity = 2, stretch = 4, any = 7;
@@ -96,6 +103,7 @@ struct Motion {
   UndoneDistortion velocity_low_pass;  ///< time constant of a first-order low-pass that was undone [s]
   /// The same of friction [s], which stays as it was read: a law is evaluated and then filtered.
   UndoneDistortion friction_low_pass;
+  FilterSource friction_filter_source = FilterSource::unknown;
   UndoneDistortion compression;       ///< c of v_meas = v_b (1 - c (v_b/fastest_velocity)^2), undone [1]
   double fastest_velocity = 0;        ///< largest |v_b|, where that was undone [m/s]
   UndoneDistortion clock_drift;       ///< by which friction fell behind the velocity, over time [1]
@@ -138,7 +146,7 @@ struct MotionOptions {
   bool undo_bandwidth = true;
   PlateauCorrection plateau = PlateauCorrection::none;
   StickRule stick = {};
-  /// Of the friction channel, as other runs of the sensor show it [s]; nothing: looked for in this one.
+  /// Of the friction channel, as other runs of the same sensor show it [s] (0: they show none); nothing: looked for.
   std::optional<UndoneDistortion> friction_low_pass = {};
 };
 

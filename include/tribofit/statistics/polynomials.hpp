@@ -70,11 +70,8 @@ struct CorrelatedNoise {
   double deviation = 0, correlation = 0;
 };
 
-/// Share of the variance of such noise that a parabola through `samples` of it takes, 0 to 1. Cost: linear.
-double share_of_parabola(std::size_t samples, double correlation);
-
-/// The noise of which parabolas through `stretches` stretches of like length left `all`: what they took with them makes
-/// it smaller and less correlated, differences between neighbours are as they were.
+/// The noise of which parabolas through `stretches` stretches of like length left `all`: the parabolas made it smaller
+/// and less correlated, by what an autoregression of first order lets expect.
 CorrelatedNoise noise_about_parabolas(const Remainder& all, double stretches);
 
 /// Weights of the samples of a window whose sum of products is the slope of their parabola of least squares at one of
