@@ -38,7 +38,7 @@ struct UndoneDistortion {
 
 /// Which records say whether the friction channel is a low-pass.
 enum class FilterSource {
-  unknown,      ///< it was not looked for, or too little re-sticks to show it
+  unknown,      ///< it was not looked for, or too few re-sticks show it
   this_record,  ///< its re-sticks show one, or none
   other_runs    ///< other runs of the same sensor do
 };
