@@ -58,7 +58,7 @@ void add_driven_options(const Command& app, Settings& s) {
   add("--evolution", s.evolutions, "Law of the state, ageing or slip (repeatable; default both)")
       .one_of(tribofit::state_evolution_names())
       .one_value_each();
-  add("--states", s.states, "State variables, 1 (default) or 2").range(1, 2);
+  add("--states", s.states, "State variables, 1 or 2 (default: 2 where they describe the steps better)").range(1, 2);
   add("--detrend", s.detrend,
       "Line that is taken off each step, over displacement or time, auto (default: the better one) or none")
       .one_of(tribofit::detrend_names());

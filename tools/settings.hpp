@@ -16,7 +16,7 @@ struct Settings {
   std::string kind;                     // of the record; empty: found
   std::vector<std::string> evolutions;  // of velocity steps and holds
   std::string detrend, reference_speed, from, to;
-  int states = 1;
+  int states = 0;
   std::string stiffness, mass, damping, rubs_on;  // of a mass on a spring
   bool trim = true;
   bool never_sticks = false;

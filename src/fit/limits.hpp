@@ -195,6 +195,13 @@ inline constexpr double kSecondDistance = 8;
 /// By which the time of a step may be wrong, over the shorter sliding beside it where a person has noted it, and over
 /// the sampling interval where it was read from a recorded speed.
 inline constexpr double kSlackOfStated = 0.1, kSlackOfSpeed = 1;
+/// The same, over the sliding, where a recorded displacement turns: drives run up, catch up and have play, so that
+/// friction answered up to 0.004 of the sliding later on real records; and the chance from which on it is moved.
+inline constexpr double kSlackOfDisplacement = 0.05, kChanceOfMovedStep = 1e-3;
+/// Chance that noise makes two states describe the steps so much better, below which they do, and error of b or D_c of
+/// either over its value above which nothing is known of it. The chance is small as noise that wanders is much like the
+/// answer of a second state; data/validation/velocity-steps.md has how often either was taken for the other.
+inline constexpr double kChanceOfSecondState = 1e-8, kVagueOfState = 0.5;
 /// Bounds of a, b and k over the range of friction, and of D_c and k over what is slid in a sampling interval and in
 /// the longest step: nothing of the response is left to see beyond them.
 inline constexpr double kLeastOfRange = 1e-5, kLargestOfRange = 30, kLeastOfSampling = 0.03, kMostOfSliding = 10,

@@ -112,15 +112,14 @@ bool is_excluded(const RateStateOptions& options, double t) {
                      [t](const Selection::Stretch& s) { return t >= s.from && t <= s.to; });
 }
 
-/// Samples of one step.
+/// Samples of one step, or values that stand for several each.
 struct Samples {
-  std::vector<double> time, friction;
+  std::vector<double> time, friction, count, scatter;
 };
 
 /// Puts neighbours together so that about `most` values are left: a value holds the samples of a part of the time since
 /// the last change of speed.
-void add_values(const RateStateData& data, const Samples& samples, std::span<const double> counts, std::size_t most,
-                RateStateData& out) {
+void add_values(const RateStateData& data, const Samples& samples, std::size_t most, RateStateData& out) {
   const auto last_change = [&](double t) {
     double at = data.phases.front().begin;
     for (const LoadPointPhase& phase : data.phases) {
@@ -134,19 +133,22 @@ void add_values(const RateStateData& data, const Samples& samples, std::span<con
     std::size_t values = 0;
     for (std::size_t i = 0; i < n;) {
       const double change = last_change(samples.time[i]), width = part * (samples.time[i] - change);
-      double time = 0, friction = 0, count = 0;
+      double time = 0, friction = 0, count = 0, scatter = 0;
       const double begin = samples.time[i];
       do {
-        time += counts[i] * samples.time[i];
-        friction += counts[i] * samples.friction[i];
-        count += counts[i];
+        const double both = count + samples.count[i], further = samples.friction[i] - friction;
+        scatter += samples.scatter[i] + count * samples.count[i] / both * further * further;
+        friction += samples.count[i] / both * further;
+        time += samples.count[i] * samples.time[i];
+        count = both;
         ++i;
       } while (i < n && samples.time[i] - begin < width && last_change(samples.time[i]) == change);
       ++values;
       if (!write) continue;
       out.time.push_back(time / count);
-      out.friction.push_back(friction / count);
+      out.friction.push_back(friction);
       out.count.push_back(count);
+      out.scatter.push_back(scatter);
     }
     return values;
   };
@@ -161,6 +163,12 @@ void set_displacement(RateStateData& data) {
 
 }  // namespace
 
+void RateStateData::set_phase_displacements() {
+  phase_displacement.assign(phases.size(), 0.0);
+  for (std::size_t i = 1; i < phases.size(); ++i)
+    phase_displacement[i] = phase_displacement[i - 1] + phases[i - 1].speed * (phases[i].begin - phases[i - 1].begin);
+}
+
 double RateStateData::displacement_at(double t) const {
   std::size_t i = 0;
   while (i + 1 < phases.size() && phases[i + 1].begin <= t) ++i;
@@ -174,15 +182,8 @@ RateStateData rate_state_data(const Motion& motion, const RateStateOptions& opti
   const double begin = std::max(options.from, motion.time.front()), end = std::min(options.to, motion.time.back());
   data.phases = phases_within(motion.load_point, begin);
   if (data.phases.empty()) return data;
-  double x = 0;
-  for (std::size_t i = 0; i < data.phases.size(); ++i) {
-    data.phase_displacement.push_back(x);
-    if (i + 1 < data.phases.size()) x += data.phases[i].speed * (data.phases[i + 1].begin - data.phases[i].begin);
-  }
-  while (data.phases.size() > 1 && data.phases.back().begin >= end) {
-    data.phases.pop_back();
-    data.phase_displacement.pop_back();
-  }
+  while (data.phases.size() > 1 && data.phases.back().begin >= end) data.phases.pop_back();
+  data.set_phase_displacements();
   find_steps(lasting(slidings_of(data.phases, end)), data);
   data.reference_speed = options.reference_speed > 0 ? options.reference_speed : data.phases.front().speed;
 
@@ -221,8 +222,9 @@ RateStateData rate_state_data(const Motion& motion, const RateStateOptions& opti
     data.begins.push_back(data.time.size());
     data.steps.push_back(step);
     data.before.push_back(before[s]);
-    const std::vector<double> ones(samples.time.size(), 1.0);
-    add_values(data, samples, ones, most, data);
+    samples.count.assign(samples.time.size(), 1.0);
+    samples.scatter.assign(samples.time.size(), 0.0);
+    add_values(data, samples, most, data);
   }
   set_displacement(data);
   return data;
@@ -233,14 +235,16 @@ RateStateData thinned(const RateStateData& data, std::size_t most) {
   out.time.clear();
   out.friction.clear();
   out.count.clear();
+  out.scatter.clear();
   out.begins.clear();
   for (std::size_t s = 0; s < data.begins.size(); ++s) {
     const auto begin = static_cast<std::ptrdiff_t>(data.begins[s]), end = static_cast<std::ptrdiff_t>(data.end_of(s));
-    Samples samples;
-    samples.time.assign(data.time.begin() + begin, data.time.begin() + end);
-    samples.friction.assign(data.friction.begin() + begin, data.friction.begin() + end);
+    const auto part = [&](const std::vector<double>& all) {
+      return std::vector<double>(all.begin() + begin, all.begin() + end);
+    };
+    const Samples samples = {part(data.time), part(data.friction), part(data.count), part(data.scatter)};
     out.begins.push_back(out.time.size());
-    add_values(data, samples, std::span(data.count).subspan(data.begins[s], samples.time.size()), most, out);
+    add_values(data, samples, most, out);
   }
   set_displacement(out);
   return out;

@@ -18,12 +18,14 @@ struct RateStateData {
   std::vector<std::size_t> before;  ///< of each step: the phase of sliding before it
   double reference_speed = 0;       ///< v0 [m/s]
 
-  /// Values, each the mean of `count` samples, in order of time; those of step s begin at begins[s].
-  std::vector<double> time, displacement, friction, count;
+  /// Values, each the mean of `count` samples, in order of time; those of step s begin at begins[s]. scatter: squares
+  /// of the samples about their mean, summed.
+  std::vector<double> time, displacement, friction, count, scatter;
   std::vector<std::size_t> begins;
 
   std::size_t size() const { return time.size(); }
   std::size_t end_of(std::size_t step) const { return step + 1 < begins.size() ? begins[step + 1] : size(); }
+  void set_phase_displacements();  ///< from the phases
   /// Of the load point at a time [m].
   double displacement_at(double t) const;
 };

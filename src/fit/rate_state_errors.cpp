@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "limits.hpp"
+#include "rate_state_times.hpp"
 #include "statistics/linear_algebra.hpp"
 #include "statistics/wandering_noise.hpp"
 #include "tribofit/statistics/distributions.hpp"
@@ -35,29 +36,38 @@ struct Excess {
 
 class FitErrors {
  public:
-  FitErrors(const RateStateProblem& problem, const RateStateData& data, const std::vector<double>& p)
-      : problem_(problem), data_(data), rows_(static_cast<Eigen::Index>(problem.count())) {
-    const auto n = static_cast<Eigen::Index>(p.size());
+  FitErrors(const RateStateProblem& problem, const std::vector<double>& p)
+      : problem_(problem), data_(problem.data()), rows_(static_cast<Eigen::Index>(problem.count())) {
     residual_.resize(rows_);
-    weighted_.resize(rows_, n);
-    valid_ = problem.evaluate(p.data(), residual_.data(), weighted_.data()) &&
-             problem.response(p.data(), friction_, &derivatives_);
+    valid_ = problem.evaluate(p.data(), residual_.data(), nullptr) &&
+             problem.response(p.data(), friction_, &derivatives_) && add_times(p);
+    if (valid_) {
+      weighted_ = derivatives_;
+      problem.weigh(weighted_);
+    }
     root_count_.resize(rows_);
     for (Eigen::Index i = 0; i < rows_; ++i) {
       const std::size_t value = problem.value_of(static_cast<std::size_t>(i));
-      times_.push_back(data.time[value]);
-      counts_.push_back(data.count[value]);
-      root_count_(i) = std::sqrt(data.count[value]);
+      times_.push_back(data_.time[value]);
+      counts_.push_back(data_.count[value]);
+      root_count_(i) = std::sqrt(data_.count[value]);
     }
     for (std::size_t k = 0; k < problem.steps().size(); ++k) begins_.push_back(problem.row_of(k));
   }
 
   bool valid() const { return valid_; }
   const NoisySeries series() const { return {times_, counts_, begins_}; }
-  double sum_of_squares() const { return residual_.squaredNorm(); }
+  /// Of the samples, those that a value stands for included.
+  double sum_of_squares() const {
+    double sum = residual_.squaredNorm();
+    for (Eigen::Index i = 0; i < rows_; ++i) sum += data_.scatter[problem_.value_of(static_cast<std::size_t>(i))];
+    return sum;
+  }
+  /// Columns of the times that were fitted, behind those of the unknowns.
+  const std::vector<Eigen::Index>& times() const { return time_columns_; }
   double count() const { return std::accumulate(counts_.begin(), counts_.end(), 0.0); }
 
-  /// Noise of what is left; the free unknowns are those whose columns are kept.
+  /// Noise of what is left; the free unknowns, and the times, are those whose columns are kept.
   WanderingNoise noise(const std::vector<Eigen::Index>& free) const {
     return noise_of_rows(free, [](std::size_t) { return true; });
   }
@@ -155,6 +165,20 @@ class FitErrors {
   }
 
  private:
+  /// Columns of the times of steps that were fitted; false where sliding runs away.
+  bool add_times(const std::vector<double>& p) {
+    for (const std::size_t s : problem_.steps()) {
+      if (!has_free_time(data_.steps[s])) continue;
+      const Eigen::VectorXd column = response_by_time(problem_, p, s);
+      if (column.size() == 0) return false;
+      if (!(column.squaredNorm() > 0)) continue;  // nothing tells of it
+      time_columns_.push_back(derivatives_.cols());
+      derivatives_.conservativeResize(Eigen::NoChange, derivatives_.cols() + 1);
+      derivatives_.rightCols(1) = column;
+    }
+    return true;
+  }
+
   std::size_t end_of(std::size_t k) const { return k + 1 < begins_.size() ? begins_[k + 1] : times_.size(); }
 
   /// Noise of what is left at some of the values.
@@ -209,6 +233,7 @@ class FitErrors {
   RowMatrix weighted_, derivatives_;
   std::vector<double> times_, counts_;
   std::vector<std::size_t> begins_;
+  std::vector<Eigen::Index> time_columns_;
 };
 
 void set_interval(const RateStateUnknowns& unknowns, std::size_t k, double searched, double error, double freedom,
@@ -220,45 +245,6 @@ void set_interval(const RateStateUnknowns& unknowns, std::size_t k, double searc
   // Of a length or stiffness: known to a factor at least.
   out.determined = !unknowns.logarithmic[k] || out.upper95 / out.lower95 < kWidestInterval;
 }
-
-/// a - b, and whether sliding is stable on this machine.
-void set_stability(std::size_t states, const std::vector<double>& p, double freedom, RateStateFit& fit) {
-  const auto n = static_cast<Eigen::Index>(p.size());
-  const Eigen::Map<const RowMatrix> covariance(fit.covariance.data(), n, n);
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
-  gradient(0) = 1;
-  double value = p[0];
-  for (std::size_t i = 0; i < states; ++i) {
-    gradient(static_cast<Eigen::Index>(1 + 2 * i)) = -1;
-    value -= p[1 + 2 * i];
-  }
-  const double quantile = t_quantile_95(freedom);
-  fit.rate_dependence = {value, std::sqrt(gradient.dot(covariance * gradient)), freedom};
-  fit.rate_dependence_lower95 = value - quantile * fit.rate_dependence.std_error;
-  fit.rate_dependence_upper95 = value + quantile * fit.rate_dependence.std_error;
-  if (states != 1 || !(fit.rate_dependence_upper95 < 0)) return;
-  const RateStateParameters<double> found = parameters_from(p.data(), 1);
-  fit.critical_stiffness = critical_stiffness(found.a, found.b[0], found.distance[0]);
-  fit.stiffness_ratio = found.stiffness / fit.critical_stiffness;
-  gradient << 1 / (found.b[0] - found.a), -1 / (found.b[0] - found.a), 1, 1;  // of ln(k D/(b - a))
-  const double half = quantile * std::sqrt(gradient.dot(covariance * gradient));
-  fit.stiffness_ratio_lower95 = fit.stiffness_ratio * std::exp(-half);
-  fit.stiffness_ratio_upper95 = fit.stiffness_ratio * std::exp(half);
-}
-
-void set_correlations(RateStateFit& fit) {
-  const std::size_t n = fit.parameters.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = i + 1; j < n; ++j) {
-      const double value = fit.covariance[i * n + j] / std::sqrt(fit.covariance[i * n + i] * fit.covariance[j * n + j]);
-      if (std::abs(value) > kStrongCorrelation) fit.correlations.push_back({i, j, value});
-    }
-  }
-}
-
-}  // namespace
-
-namespace {
 
 /// Values of the unknowns before their errors are known; returns those that are free.
 std::vector<Eigen::Index> take_values(const RateStateUnknowns& unknowns, const std::vector<double>& p,
@@ -346,15 +332,15 @@ void say_excess(const FitErrors& found, double distance, const std::vector<Eigen
 
 }  // namespace
 
-RateStateFit fit_from(const RateStateProblem& problem, const RateStateData& data, const RateStateUnknowns& unknowns,
-                      const RateStateSolution& solution, StateEvolution evolution, std::size_t states) {
+RateStateFit fit_from(const RateStateProblem& problem, const RateStateUnknowns& unknowns,
+                      const RateStateSolution& solution) {
   RateStateFit fit;
-  fit.evolution = evolution;
+  fit.evolution = problem.evolution();
   if (!solution.found) {
     fit.messages.push_back("the fit failed: " + solution.message);
     return fit;
   }
-  const FitErrors found(problem, data, solution.p);
+  const FitErrors found(problem, solution.p);
   if (!found.valid()) {
     fit.messages.emplace_back("the fit failed: the simulated sliding runs away at its minimum");
     return fit;
@@ -363,23 +349,25 @@ RateStateFit fit_from(const RateStateProblem& problem, const RateStateData& data
   fit.samples = static_cast<std::size_t>(found.count());
   fit.rmse = std::sqrt(found.sum_of_squares() / found.count());
   const std::vector<Eigen::Index> free = take_values(unknowns, solution.p, fit);
-  const WanderingNoise noise = found.noise(free);
+  std::vector<Eigen::Index> fitted = free;
+  fitted.insert(fitted.end(), found.times().begin(), found.times().end());
+  const WanderingNoise noise = found.noise(fitted);
   fit.noise_white = noise.white;
   fit.noise_slow = noise.slow;
   fit.noise_time = noise.time;
-  const Eigen::MatrixXd influence = found.influence(free);
+  const Eigen::MatrixXd influence = found.influence(fitted);
   set_errors(unknowns, solution.p, free, found.errors_of(influence, noise), fit);
-  set_stability(states, solution.p, fit.degrees_of_freedom, fit);
+  set_stability(problem.states(), solution.p, fit.degrees_of_freedom, fit);
   set_correlations(fit);
-  set_own_values(found, problem.steps().size(), free, influence, noise, fit);
-  say_excess(found, adapting_distance(data, states, fit), free, fit);
+  set_own_values(found, problem.steps().size(), fitted, influence, noise, fit);
+  say_excess(found, adapting_distance(problem.data(), problem.states(), fit), fitted, fit);
   return fit;
 }
 
 double log_likelihood_below(const RateStateProblem& best, const RateStateSolution& best_solution,
                             const RateStateProblem& other, const RateStateSolution& other_solution,
-                            const RateStateData& data, const RateStateFit& fit) {
-  const FitErrors one(best, data, best_solution.p), two(other, data, other_solution.p);
+                            const RateStateFit& fit) {
+  const FitErrors one(best, best_solution.p), two(other, other_solution.p);
   if (!one.valid() || !two.valid() || !(fit.noise_white > 0)) return kUnknown;
   const WanderingNoise noise = {fit.noise_white, fit.noise_slow, fit.noise_time};
   return 0.5 * (two.whitened(noise) - one.whitened(noise));

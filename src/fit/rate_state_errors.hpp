@@ -7,14 +7,18 @@
 namespace tribofit::fit {
 
 /// Makes a fit of a solution: errors, intervals, mu_0 and trend of each step, stability.
-RateStateFit fit_from(const RateStateProblem& problem, const RateStateData& data, const RateStateUnknowns& unknowns,
-                      const RateStateSolution& solution, StateEvolution evolution, std::size_t states);
+RateStateFit fit_from(const RateStateProblem& problem, const RateStateUnknowns& unknowns,
+                      const RateStateSolution& solution);
 
-/// By how much the logarithm of the likelihood of what solution `p` leaves is below that of the fit, with the noise of
-/// the fit; NaN where it cannot be computed.
+/// By how much the logarithm of the likelihood of what the other solution leaves is below that of the best, with the
+/// noise of the fit made of the best; NaN where it cannot be computed.
 double log_likelihood_below(const RateStateProblem& best, const RateStateSolution& best_solution,
                             const RateStateProblem& other, const RateStateSolution& other_solution,
-                            const RateStateData& data, const RateStateFit& fit);
+                            const RateStateFit& fit);
+
+/// a - b, and whether sliding is stable on this machine, from the values and their covariance.
+void set_stability(std::size_t states, const std::vector<double>& p, double freedom, RateStateFit& fit);
+void set_correlations(RateStateFit& fit);
 
 /// What a person is told of it.
 void add_messages(RateStateFit& fit);

@@ -32,7 +32,7 @@ RateStateParameters<double> parameters_from(const double* p, std::size_t states)
 
 RateStateProblem::RateStateProblem(const RateStateData& data, StateEvolution evolution, std::size_t states,
                                    Detrend detrend, std::vector<std::size_t> steps, std::optional<std::size_t> first)
-    : data_(data), evolution_(evolution), states_(states), detrend_(detrend), steps_(std::move(steps)) {
+    : data_(data), evolution_(evolution), states_(states), detrend_(detrend), steps_(std::move(steps)), first_(first) {
   for (const std::size_t s : steps_) {
     first_rows_.push_back(values_.size());
     for (std::size_t i = data.begins[s]; i < data.end_of(s); ++i) values_.push_back(i);
@@ -72,7 +72,8 @@ Eigen::MatrixXd RateStateProblem::design_of(std::size_t k) const {
   return out;
 }
 
-void RateStateProblem::project(Eigen::Ref<RowMatrix> rows) const {
+void RateStateProblem::weigh(RowMatrix& rows) const {
+  for (std::size_t i = 0; i < rows_; ++i) rows.row(static_cast<Eigen::Index>(i)) *= root_count_[i];
   for (std::size_t k = 0; k < bases_.size(); ++k) {
     const Eigen::MatrixXd& basis = bases_[k];
     auto block = rows.middleRows(static_cast<Eigen::Index>(first_rows_[k]), basis.rows());
@@ -116,14 +117,13 @@ bool RateStateProblem::evaluate(const double* p, double* residual, double* jacob
   RowMatrix rows(static_cast<Eigen::Index>(rows_), 1);
   for (std::size_t i = 0; i < rows_; ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    rows(at, 0) = root_count_[i] * (friction(at) - data_.friction[values_[i]]);
-    if (jacobian != nullptr) derivatives.row(at) *= root_count_[i];
+    rows(at, 0) = friction(at) - data_.friction[values_[i]];
   }
-  project(rows);
+  weigh(rows);
   if (!rows.allFinite()) return false;
   std::copy(rows.data(), rows.data() + rows_, residual);
   if (jacobian == nullptr) return true;
-  project(derivatives);
+  weigh(derivatives);
   if (!derivatives.allFinite()) return false;
   std::copy(derivatives.data(), derivatives.data() + derivatives.size(), jacobian);
   return true;

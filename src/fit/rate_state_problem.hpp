@@ -27,15 +27,20 @@ class RateStateProblem : public Residuals {
 
   /// Friction less what is projected out, at every value, and its derivatives; false where sliding runs away.
   bool response(const double* p, Eigen::VectorXd& friction, RowMatrix* jacobian) const;
+  const RateStateData& data() const { return data_; }
+  StateEvolution evolution() const { return evolution_; }
+  std::size_t states() const { return states_; }
   const std::vector<std::size_t>& steps() const { return steps_; }
+  /// The same of other data with the same steps and values.
+  RateStateProblem on(const RateStateData& data) const { return {data, evolution_, states_, detrend_, steps_, first_}; }
   /// First row of the k-th step, and behind the last.
   std::size_t row_of(std::size_t k) const { return first_rows_[k]; }
   /// Value of the data that a row stands for.
   std::size_t value_of(std::size_t row) const { return values_[row]; }
   /// Constant and slope at the k-th step, by rows of the step: columns of the design, without weights.
   Eigen::MatrixXd design_of(std::size_t k) const;
-  /// Takes constant and line out of weighted rows, step by step.
-  void project(Eigen::Ref<RowMatrix> rows) const;
+  /// Weights rows and takes constant and line out of them, step by step.
+  void weigh(RowMatrix& rows) const;
 
  private:
   template <class T, std::size_t kStates>
@@ -45,7 +50,9 @@ class RateStateProblem : public Residuals {
   StateEvolution evolution_;
   std::size_t states_;
   Detrend detrend_;
-  std::vector<std::size_t> steps_, first_rows_, values_;
+  std::vector<std::size_t> steps_;
+  std::optional<std::size_t> first_;
+  std::vector<std::size_t> first_rows_, values_;
   std::size_t rows_ = 0;
   std::vector<double> times_, root_count_;
   std::vector<LoadPointPhase> phases_;

@@ -11,6 +11,8 @@ namespace tribofit::fit {
 namespace {
 
 constexpr int kMostRounds = 8;
+/// By which a step is moved to see what changes, over the sampling interval.
+constexpr double kPartOfInterval = 0.02;
 
 /// Phase that begins at a step.
 std::size_t phase_behind(const RateStateData& data, std::size_t step) {
@@ -21,41 +23,40 @@ void set_step_time(RateStateData& data, std::size_t step, double time) {
   const std::size_t phase = phase_behind(data, step);
   data.phases[phase].begin = time;
   data.steps[step].time = time;
-  for (std::size_t i = 1; i < data.phases.size(); ++i) {
-    const LoadPointPhase& before = data.phases[i - 1];
-    data.phase_displacement[i] = data.phase_displacement[i - 1] + before.speed * (data.phases[i].begin - before.begin);
-  }
+  data.set_phase_displacements();
   for (VelocityStep& s : data.steps) s.displacement = data.displacement_at(s.time);
   for (std::size_t i = 0; i < data.size(); ++i) data.displacement[i] = data.displacement_at(data.time[i]);
 }
 
-/// Change of the residuals of a step with its time: by a difference, its own rows alone.
-Eigen::VectorXd by_time(const RateStateData& data, StateEvolution evolution, std::size_t states, Detrend detrend,
-                        const std::vector<std::size_t>& all, const std::vector<double>& p, std::size_t step) {
-  const double h = 0.02 * data.steps[step].interval;
-  std::array<Eigen::VectorXd, 2> residual;
+}  // namespace
+
+bool has_free_time(const VelocityStep& step) {
+  return step.slack > 0 && step.hold == 0;
+}
+
+Eigen::VectorXd response_by_time(const RateStateProblem& problem, const std::vector<double>& p, std::size_t step) {
+  const VelocityStep& at = problem.data().steps[step];
+  const double h = kPartOfInterval * at.interval;
+  std::array<Eigen::VectorXd, 2> friction;
   for (std::size_t side = 0; side < 2; ++side) {
-    RateStateData moved = data;
-    set_step_time(moved, step, data.steps[step].time + (side == 0 ? -h : h));
-    const RateStateProblem problem(moved, evolution, states, detrend, all);
-    residual[side] = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(problem.count()));
-    if (!problem.evaluate(p.data(), residual[side].data(), nullptr)) return {};
+    RateStateData moved = problem.data();
+    set_step_time(moved, step, at.time + (side == 0 ? -h : h));
+    if (!problem.on(moved).response(p.data(), friction[side], nullptr)) return {};
   }
-  Eigen::VectorXd out = (residual[1] - residual[0]) / (2 * h);
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    if (i < data.begins[step] || i >= data.end_of(step)) out(static_cast<Eigen::Index>(i)) = 0;
+  Eigen::VectorXd out = (friction[1] - friction[0]) / (2 * h);
+  for (std::size_t k = 0; k < problem.steps().size(); ++k) {
+    if (problem.steps()[k] == step) continue;
+    for (std::size_t i = problem.row_of(k); i < problem.row_of(k + 1); ++i) out(static_cast<Eigen::Index>(i)) = 0;
   }
   return out;
 }
-
-}  // namespace
 
 double refine_step_times(RateStateData& data, StateEvolution evolution, std::size_t states, Detrend detrend,
                          const RateStateUnknowns& unknowns, RateStateSolution& solution) {
   std::vector<std::size_t> all(data.steps.size()), free;
   std::iota(all.begin(), all.end(), std::size_t{0});
   for (const std::size_t s : all) {
-    if (data.steps[s].slack > 0 && data.steps[s].hold == 0) free.push_back(s);
+    if (has_free_time(data.steps[s])) free.push_back(s);
   }
   std::vector<double> stated;
   for (const VelocityStep& step : data.steps) stated.push_back(step.time);
@@ -67,11 +68,14 @@ double refine_step_times(RateStateData& data, StateEvolution evolution, std::siz
     if (!problem.evaluate(solution.p.data(), residual.data(), jacobian.data())) break;
     Eigen::MatrixXd design(rows, n + static_cast<Eigen::Index>(free.size()));
     design.leftCols(n) = jacobian;
+    RowMatrix by_times(rows, static_cast<Eigen::Index>(free.size()));
     for (std::size_t k = 0; k < free.size(); ++k) {
-      const Eigen::VectorXd column = by_time(data, evolution, states, detrend, all, solution.p, free[k]);
+      const Eigen::VectorXd column = response_by_time(problem, solution.p, free[k]);
       if (column.size() == 0) return 0;
-      design.col(n + static_cast<Eigen::Index>(k)) = column;
+      by_times.col(static_cast<Eigen::Index>(k)) = column;
     }
+    problem.weigh(by_times);
+    design.rightCols(by_times.cols()) = by_times;
     const Eigen::VectorXd scale = design.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
     const Eigen::VectorXd change =
         scale.asDiagonal() * least_squares_of_any_rank(design * scale.asDiagonal(), -residual).x;

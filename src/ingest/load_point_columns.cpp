@@ -10,18 +10,9 @@ namespace tribofit {
 
 namespace {
 
-constexpr std::array<std::string_view, 12> kPlainDisplacements = {"displacement",
-                                                                  "disp",
-                                                                  "displ",
-                                                                  "sheardisplacement",
-                                                                  "sheardisp",
-                                                                  "sheardispl",
-                                                                  "axialdisplacement",
-                                                                  "totaldisplacement",
-                                                                  "verschiebung",
-                                                                  "scherweg",
-                                                                  "position",
-                                                                  "x"};
+constexpr std::array<std::string_view, 13> kPlainDisplacements = {
+    "displacement",      "disp",  "displ",        "sheardisplacement", "sheardisp", "sheardispl", "axialdisplacement",
+    "totaldisplacement", "vdcdt", "verschiebung", "scherweg",          "position",  "x"};
 constexpr std::array<std::string_view, 9> kPlainVelocities = {
     "speed", "velocity", "v", "slidingvelocity", "slidingspeed", "shearvelocity", "slipvelocity", "sliprate", "rate"};
 

@@ -35,6 +35,7 @@ constexpr std::array symbols = {
     Symbol{"m", 1, {1, 0, 0, 0, 0, 0, 0}, "numcdk"},
     Symbol{"micron", 1e-6, {1, 0, 0, 0, 0, 0, 0}, ""},
     Symbol{"microns", 1e-6, {1, 0, 0, 0, 0, 0, 0}, ""},
+    Symbol{"mic", 1e-6, {1, 0, 0, 0, 0, 0, 0}, ""},  // as xlook has it
     Symbol{"in", 0.0254, {1, 0, 0, 0, 0, 0, 0}, ""},
     Symbol{"ft", 0.3048, {1, 0, 0, 0, 0, 0, 0}, ""},
     Symbol{"s", 1, {0, 0, 1, 0, 0, 0, 0}, "num"},
@@ -51,6 +52,7 @@ constexpr std::array symbols = {
     Symbol{"gf", 9.80665e-3, {1, 1, -2, 0, 0, 0, 0}, ""},
     Symbol{"kp", 9.80665, {1, 1, -2, 0, 0, 0, 0}, ""},
     Symbol{"Pa", 1, {-1, 1, -2, 0, 0, 0, 0}, "kMG"},
+    Symbol{"mpa", 1e6, {-1, 1, -2, 0, 0, 0, 0}, ""},  // of names in small letters: no stress is in millipascals
     Symbol{"bar", 1e5, {-1, 1, -2, 0, 0, 0, 0}, "mk"},
     Symbol{"psi", 6894.757293168, {-1, 1, -2, 0, 0, 0, 0}, ""},
     Symbol{"lbf", 4.4482216152605, {1, 1, -2, 0, 0, 0, 0}, ""},

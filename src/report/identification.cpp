@@ -122,9 +122,6 @@ Suggestion next_command(const Identification& result, const ReportOptions& optio
   const auto same_with = [&](const std::vector<std::string>& more) { return command_line(options, more, result.path); };
   const std::vector<std::string> csv = {"--csv", csv_folder_for(result.path)};
   if (result.rate_state && result.rate_state->fitted()) {
-    const bool one_state = !has_option(options.arguments, "--states");
-    if (result.rate_state->fits[result.rate_state->best].lacks.value_or(false) && one_state)
-      return {"to add a second state variable and see what is left", same_with({"--states", "2"})};
     if (!options.csv_written) return {"to plot the response and to go on with the values of each step", same_with(csv)};
     return {"to see the response on a page of charts", same_with({"--report", "steps.html"})};
   }

@@ -88,6 +88,15 @@ void add_law(const RateStateAnalysis& analysis, std::size_t k, const Motion& mot
   for (const std::string& message : fit.messages) section.item(message);
 }
 
+/// That a second state variable was asked for by the data, or not.
+void add_states(const RateStateAnalysis& analysis, ReportSection& section) {
+  if (!std::isfinite(analysis.states_p_value)) return;
+  section.plain(analysis.states == 2
+                    ? fmt::format("A second state variable describes these steps better than one ({}).",
+                                  p_value_text(analysis.states_p_value))
+                    : "One state variable describes these steps; --states 2 shows a second.");
+}
+
 ReportTable steps_table(const RateStateAnalysis& analysis) {
   ReportTable table("Steps");
   table.numbers({"no."}).numbers({"time [s]", "from [um/s]", "to [um/s]"}).numbers({"hold [s]"}, 1);
@@ -243,6 +252,7 @@ void add_rate_state(const RateStateAnalysis& analysis, const Motion& motion, Rep
   for (std::size_t k = 0; k < analysis.fits.size(); ++k) add_law(analysis, k, motion, section);
   if (!analysis.fitted()) return;
   add_which_law(analysis, section);
+  add_states(analysis, section);
   section.add(each_table(analysis, motion));
   if (std::isfinite(analysis.sharing_p_value)) {
     constexpr double kDiffer = 0.01;

@@ -19,6 +19,20 @@ TEST_F(LoadPoint, ADisplacementOfThatNameMakesVelocitySteps) {
   EXPECT_TRUE(trace.velocity.empty());
 }
 
+/// xlook and the laboratory at Penn State write them so.
+TEST_F(LoadPoint, NamesAndUnitsOfRockMechanics) {
+  const Trace xlook =
+      read_trace(write("lp_disp,nor_stress,time,mu\nmic,MPa,sec,.\n0,20,0,0.6\n2,20,1,0.61\n4,20,2,0.62\n"));
+  ASSERT_EQ(xlook.drive_position.size(), 3U);
+  EXPECT_DOUBLE_EQ(xlook.drive_position[2], 4e-6);
+  EXPECT_DOUBLE_EQ(xlook.normal_stress.value, 20e6);
+  std::string rows = "time_s,vdcdt_um,mu\n";
+  for (int i = 0; i < 100; ++i) rows += std::to_string(i) + "," + std::to_string(2 * i) + ",0.6\n";
+  const Trace column = read_trace(write(rows, "psu.csv"));
+  EXPECT_EQ(column.kind, RecordKind::velocity_steps);
+  EXPECT_DOUBLE_EQ(column.drive_position[2], 4e-6);
+}
+
 TEST_F(LoadPoint, SamplingMayChange) {
   std::string text = "Time (s),Load Point Displacement (mm),Friction\n";
   double t = 0;

@@ -27,11 +27,15 @@ struct Cell {
   double step;         ///< ratio of the speeds
   double white, slow;  ///< noise [1]
   bool holds = false;
+  double late = 0;         ///< friction answers each step by up to this later than the load point is said to turn [s]
+  std::size_t states = 1;  ///< the second as b_2 of 0.4 to 0.8 b, over 10 D_c
 };
 
-/// 2 um/s and `step` times as fast in turn, each over at least 12 D_c; or four holds of 3 to 100 s.
+/// 2 um/s and `step` times as fast in turn, each over at least 12 D_c; or four holds of 3 to 100 s. Of two states steps
+/// up and down, over at least 14 times the longer distance.
 std::vector<LoadPointPhase> phases_of(const Cell& cell) {
   std::vector<LoadPointPhase> out = {{0, 2 * kMicro}};
+  if (cell.states == 2) return {{0, 2 * kMicro}, {60, 10 * kMicro}, {200, 2 * kMicro}};
   if (cell.holds) {
     out = {{0, 10 * kMicro}};
     for (const double hold : {3.0, 10.0, 30.0, 100.0}) {
@@ -56,6 +60,11 @@ RateStateMachine draw_machine(const Cell& cell, std::mt19937_64& generator) {
   m.parameters.distance[0] = (5 + 5 * uniform(generator)) * kMicro;
   m.parameters.stiffness =
       cell.stiffness * critical_stiffness(m.parameters.a, m.parameters.b[0], m.parameters.distance[0]);
+  m.states = cell.states;
+  if (cell.states == 2) {
+    m.parameters.b[1] = (0.4 + 0.4 * uniform(generator)) * m.parameters.b[0];
+    m.parameters.distance[1] = 10 * m.parameters.distance[0];
+  }
   return m;
 }
 
@@ -66,7 +75,10 @@ Motion draw_motion(const Cell& cell, const RateStateMachine& machine, std::mt199
   const double end = motion.load_point.back().begin + 60;
   for (std::size_t i = 0; static_cast<double>(i) / kRate < end; ++i)
     motion.time.push_back(static_cast<double>(i) / kRate);
-  motion.friction = apart::Contact(machine).friction(motion.load_point, motion.time);
+  std::uniform_real_distribution<double> uniform;
+  std::vector<LoadPointPhase> turns = motion.load_point;
+  for (std::size_t i = 1; i < turns.size(); ++i) turns[i].begin += cell.late * uniform(generator);
+  motion.friction = apart::Contact(machine).friction(turns, motion.time);
   motion.relative_velocity.assign(motion.time.size(), 0.0);
   std::normal_distribution<double> normal;
   const double decay = std::exp(-1 / kRate / kForgets), drift = 2e-5 * normal(generator);
@@ -83,6 +95,7 @@ struct Tally {
   std::array<double, 4> squares = {};  ///< of relative errors
   std::array<int, 4> covered = {};
   int fitted = 0, right = 0, wrong = 0;  ///< laws named, where p < 0.05
+  int states = 0, moved = 0;             ///< the number of states is the true one; steps were moved
 };
 
 Tally run(const Cell& cell, int records, unsigned cell_number) {
@@ -97,6 +110,8 @@ Tally run(const Cell& cell, int records, unsigned cell_number) {
     const RateStateFit& fit = analysis.fits[static_cast<std::size_t>(cell.evolution)];
     if (!fit.converged) continue;
     ++tally.fitted;
+    tally.states += fit.parameters.size() == 2 + 2 * cell.states ? 1 : 0;
+    tally.moved += analysis.steps.front().slack > 0 ? 1 : 0;
     const bool named = analysis.law_p_value < 0.05;
     const bool right = analysis.fits[analysis.best].evolution == cell.evolution;
     tally.right += named && right ? 1 : 0;
@@ -104,7 +119,7 @@ Tally run(const Cell& cell, int records, unsigned cell_number) {
     const auto& p = machine.parameters;
     const std::array<double, 4> truth = {p.a, p.b[0], p.distance[0], p.stiffness};
     for (std::size_t k = 0; k < truth.size(); ++k) {
-      const FitParameter& found = fit.parameters[k];
+      const FitParameter& found = k < 3 ? fit.parameters[k] : fit.parameters.back();  // b_2 and D_c2 before k
       tally.covered[k] += truth[k] > found.lower95 && truth[k] < found.upper95 ? 1 : 0;
       tally.squares[k] += std::pow(found.value / truth[k] - 1, 2);
     }
@@ -115,9 +130,11 @@ Tally run(const Cell& cell, int records, unsigned cell_number) {
 void print_row(const Cell& cell, const Tally& t, int records) {
   const auto error = [&](std::size_t k) { return 100 * std::sqrt(t.squares[k] / std::max(1, t.fitted)); };
   const auto cover = [&](std::size_t k) { return 100.0 * t.covered[k] / std::max(1, t.fitted); };
-  fmt::print("| {} | {} | {}/{} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.0f} | {:.0f} | {:.0f} | {:.0f} | {} | {} |\n",
-             to_string(cell.evolution), cell.name, t.fitted, records, error(0), error(1), error(2), error(3), cover(0),
-             cover(1), cover(2), cover(3), t.right, t.wrong);
+  fmt::print(
+      "| {} | {} | {}/{} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.0f} | {:.0f} | {:.0f} | {:.0f} | {} | {} | {} | {} "
+      "|\n",
+      to_string(cell.evolution), cell.name, t.fitted, records, error(0), error(1), error(2), error(3), cover(0),
+      cover(1), cover(2), cover(3), t.right, t.wrong, t.states, t.moved);
   std::fflush(stdout);
 }
 
@@ -132,18 +149,22 @@ int main(int argc, char** argv) {
 second, with noise of 0.0002 (white; coloured: 0.0001 white and 0.0002 that wanders over 2 s) and a drift of about 2e-5 a
 second; a 0.006 to 0.014, b - a 0.003 to 0.006, D_c 5 to 10 um. The errors are root mean squares over the records, of fits
 of the law they were made with. Covered: per cent of 95 % intervals that hold the truth. Law named: records for which a law
-was named (p < 0.05) and it was the right one, and those where it was the wrong one.
+was named (p < 0.05) and it was the right one, and those where it was the wrong one. States: records for which as many
+states were chosen as they have. Moved: records whose steps were taken for later or earlier than the load point turns.
 
 )",
              records);
   fmt::print(
-      "| law | record | fitted | a % | b % | D_c % | k % | covered a | b | D_c | k | law named | wrong |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "| law | record | fitted | a % | b % | D_c % | k % | covered a | b | D_c | k | law named | wrong | states | "
+      "moved |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   std::array<int, 2> pooled = {};
   unsigned number = 0;
   for (const StateEvolution evolution : state_evolutions) {
     const auto cell = [&](const char* name, double stiffness, double step, double white, double slow,
-                          bool holds = false) { return Cell{name, evolution, stiffness, step, white, slow, holds}; };
+                          bool holds = false, double late = 0, std::size_t states = 1) {
+      return Cell{name, evolution, stiffness, step, white, slow, holds, late, states};
+    };
     // Under the slip law large steps run away above the critical stiffness, too (J.-C. Gu et al., J. Mech. Phys. Solids
     // 32 (1984) 167): with these a and b from 2.2 times the speed on at 1.1 k_c (less while the last one still swings),
     // from 3.5 on at 1.5 k_c.
@@ -156,7 +177,11 @@ was named (p < 0.05) and it was the right one, and those where it was the wrong 
                           ageing ? cell("2 and 10 um/s, k = 1.1 k_c, coloured", 1.1, 5, 1e-4, 2e-4)
                                  : cell("2 and 3 um/s, k = 1.1 k_c, coloured", 1.1, 1.5, 1e-4, 2e-4),
                           cell("2 and 20 um/s, k = 5 k_c, coloured", 5, 10, 1e-4, 2e-4),
-                          cell("holds of 3 to 100 s, k = 5 k_c, coloured", 5, 1, 1e-4, 2e-4, true)}) {
+                          cell("holds of 3 to 100 s, k = 5 k_c, coloured", 5, 1, 1e-4, 2e-4, true),
+                          cell("2 and 10 um/s, up to 0.3 s late, white", 30, 5, 2e-4, 0, false, 0.3),
+                          cell("2 and 10 um/s, up to 0.3 s late, coloured", 30, 5, 1e-4, 2e-4, false, 0.3),
+                          cell("two states, white", 10, 5, 2e-4, 0, false, 0, 2),
+                          cell("two states, coloured", 10, 5, 1e-4, 2e-4, false, 0, 2)}) {
       ++number;
       if (only > 0 && number != only) continue;
       const Tally tally = run(c, records, number);

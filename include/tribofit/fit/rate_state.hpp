@@ -29,7 +29,7 @@ std::optional<Detrend> find_detrend(std::string_view name);
 /// How velocity steps and holds are fitted.
 struct RateStateOptions {
   std::vector<StateEvolution> evolutions = {state_evolutions.begin(), state_evolutions.end()};
-  std::size_t states = 1;  ///< state variables
+  std::size_t states = 0;  ///< state variables, 1 or 2; 0: a second where it describes the steps better beyond chance
   Detrend detrend = Detrend::automatic;
   double reference_speed = 0;  ///< v0 [m/s]; 0: the speed of the load point before the first step
   double from = -std::numeric_limits<double>::infinity();  ///< [s]: nothing before is used
@@ -114,6 +114,9 @@ struct RateStateAnalysis {
   std::vector<VelocityStep> steps;
   std::vector<RateStateFit> fits;  ///< one for each law, all steps together
   std::size_t best = 0;            ///< in `fits`
+  std::size_t states = 1;          ///< state variables of the fits
+  /// Chance that what one state leaves more than two is noise; NaN: not compared.
+  double states_p_value = std::numeric_limits<double>::quiet_NaN();
   double law_p_value =
       std::numeric_limits<double>::quiet_NaN();  ///< bound of the chance that the other law is true; NaN: not compared
   std::vector<RateStateFit> each;                ///< of each step by itself, the best law

@@ -1,0 +1,71 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "rate_state_records.hpp"
+
+// What is chosen from the data: times of the steps, the number of state variables.
+
+namespace tribofit {
+
+/// Drives run up and have play: friction that answers a fifth of a second late is no softer machine.
+TEST(RateState, StepsThatFrictionAnswersLateAreMoved) {
+  for (const StateEvolution evolution : state_evolutions) {
+    const RateStateMachine machine = machine_of(evolution, 20);
+    std::vector<LoadPointPhase> late = kSteps;
+    for (std::size_t i = 1; i < late.size(); ++i) late[i].begin += i % 2 == 0 ? 0.13 : 0.2;
+    Motion motion = motion_from(machine, late, times_until(250, 20), 1e-4);
+    motion.load_point = kSteps;
+    const RateStateAnalysis analysis = fit_rate_state(motion, together());
+    ASSERT_TRUE(analysis.fitted()) << analysis.reason;
+    expect_recovered(analysis.fits[evolution == StateEvolution::ageing ? 0 : 1], machine, 0.03, 0.05);
+    for (std::size_t s = 0; s < analysis.steps.size(); ++s)
+      EXPECT_NEAR(analysis.steps[s].time, late[s + 1].begin, 0.01) << s;
+    EXPECT_THAT(analysis.messages, ::testing::Contains(::testing::HasSubstr("steps were moved")));
+  }
+}
+
+TEST(RateState, StepsThatFrictionAnswersAtOnceStayWhereTheyAre) {
+  const RateStateAnalysis analysis = fit_rate_state(
+      motion_from(machine_of(StateEvolution::ageing, 20), kSteps, times_until(250, 20), 1e-4), together());
+  ASSERT_TRUE(analysis.fitted()) << analysis.reason;
+  for (std::size_t s = 0; s < analysis.steps.size(); ++s) EXPECT_EQ(analysis.steps[s].time, kSteps[s + 1].begin) << s;
+}
+
+/// Where a line over the displacement can pass for the slow state, its sign hangs on the second.
+TEST(RateState, ASecondStateIsFoundWhereItIs) {
+  RateStateMachine machine = machine_of(StateEvolution::ageing, 20, 0.012, 0.010);
+  machine.parameters.stiffness = 1e-2 / kMicrometre;
+  machine.states = 2;
+  machine.parameters.b[1] = 0.007;
+  machine.parameters.distance[1] = 200 * kMicrometre;
+  const std::vector<LoadPointPhase> phases = {{0, 2e-6}, {60, 10e-6}};
+  const RateStateAnalysis analysis =
+      fit_rate_state(motion_from(machine, phases, times_until(200, 20), 2e-4), together());
+  ASSERT_TRUE(analysis.fitted()) << analysis.reason;
+  ASSERT_EQ(analysis.states, 2U);
+  const RateStateFit& fit = analysis.fits[0];
+  const std::array<double, 6> truth = {0.012, 0.010, 10e-6, 0.007, 200e-6, 1e4};
+  for (std::size_t k = 0; k < truth.size(); ++k)
+    EXPECT_NEAR(fit.parameters[k].value, truth[k], 4 * fit.parameters[k].std_error) << fit.parameters[k].parameter.name;
+  EXPECT_LT(fit.rate_dependence_upper95, 0);
+}
+
+TEST(RateState, OneStateIsLeftAlone) {
+  const RateStateAnalysis analysis =
+      fit_rate_state(motion_from(machine_of(StateEvolution::slip, 5), kSteps, times_until(250, 20), 2e-4), together());
+  EXPECT_EQ(analysis.states, 1U);
+  EXPECT_GT(analysis.states_p_value, 1e-6);
+}
+
+/// What is fitted are means of neighbours; what is left is that of the samples.
+TEST(RateState, ErrorsAreThoseOfTheSamples) {
+  const Motion motion = motion_from(machine_of(StateEvolution::ageing, 5), kSteps, times_until(250, 200), 2e-4);
+  const RateStateAnalysis analysis = fit_rate_state(motion, together());
+  ASSERT_TRUE(analysis.fitted()) << analysis.reason;
+  EXPECT_NEAR(analysis.fits[0].rmse, 2e-4, 3e-6);
+  EXPECT_NEAR(analysis.fits[0].held_out_rmse, 2e-4, 3e-6);
+}
+
+}  // namespace tribofit
