@@ -1,5 +1,8 @@
 #include "tribofit/pipeline.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -12,6 +15,7 @@
 #include "kinematics/side_by_side.hpp"
 #include "segmentation/obstacles.hpp"
 #include "study/fit_machines.hpp"
+#include "tribofit/ingest/input_error.hpp"
 #include "tribofit/kinematics/clock_offset.hpp"
 #include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/stop.hpp"
@@ -108,7 +112,27 @@ Identification prepare_trace(const TraceInput& input, const IdentifyOptions& opt
   return prepare(input, kinematic, options.motion, Purpose::anything);
 }
 
+namespace {
+
+/// Values of velocity steps alone are given for a record of them.
+void refuse_given_of_steps(const IdentifyOptions& options, const Motion& motion) {
+  const std::vector<GivenParameter>& fitted = options.fit.given;
+  for (const GivenParameter& given : options.rate_state.given) {
+    const auto is_fitted = [&](const GivenParameter& g) {
+      return g.name == given.name || g.name.ends_with("." + given.name);
+    };
+    if (std::any_of(fitted.begin(), fitted.end(), is_fitted)) continue;
+    const std::string kind = motion.kind ? fmt::format("of the kind {}", to_string(*motion.kind)) : "none of them";
+    throw InputError(
+        fmt::format("{} was given, which velocity steps and holds have, and this record is {}", given.name, kind),
+        "leave it out of --start and --bounds, or state the kind of the record with --kind velocity-steps");
+  }
+}
+
+}  // namespace
+
 void fit_trace(const IdentifyOptions& options, Identification& trace) {
+  if (!is_driven_in_steps(trace.motion.kind)) refuse_given_of_steps(options, trace.motion);
   if (!is_driven_in_steps(trace.motion.kind)) return fit_trace(options, trace.motion, trace);
   trace.fits.clear();
   trace.best = 0;

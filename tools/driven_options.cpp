@@ -28,8 +28,9 @@ constexpr std::array<Named, 6> kParameters = {{{"a", Quantity::dimensionless, "a
 
 constexpr Named kBaseFriction = {"mu_0", Quantity::dimensionless, "mu_0=0.6"};
 
-bool is_stated(const Settings& s) {
-  return names_load_point_speeds(s) || is_driven_in_steps(find_record_kind(s.kind));
+/// What is stated, or else the file, may say that the load point is driven in steps.
+bool may_be_driven(const Settings& s) {
+  return s.kind.empty() || names_load_point_speeds(s) || is_driven_in_steps(find_record_kind(s.kind));
 }
 
 const Named* find_parameter(std::string_view name) {
@@ -91,7 +92,7 @@ void read_given(const Settings& s, std::vector<GivenParameter>& given) {
 }  // namespace
 
 bool is_rate_state_parameter(const Settings& s, const std::string& name) {
-  return is_stated(s) && find_parameter(name) != nullptr;
+  return may_be_driven(s) && find_parameter(name) != nullptr;
 }
 
 std::map<std::string, double> rate_state_values(const std::string& text, const std::string& option) {
@@ -153,6 +154,6 @@ RateStateOptions driven_options_from(const Settings& s) {
   if (!s.from.empty()) options.from = stated_value(s.from, Quantity::time, "--from", "s");
   if (!s.to.empty()) options.to = stated_value(s.to, Quantity::time, "--to", "s");
   if (!(options.from < options.to)) throw UsageError("--from and --to leave nothing between them");
-  if (is_stated(s)) read_given(s, options.given);
+  if (may_be_driven(s)) read_given(s, options.given);
   return options;
 }

@@ -22,7 +22,7 @@ std::vector<tribofit::LoadPointPhase> load_point_from(const Settings& s, std::op
 /// How velocity steps and holds are fitted.
 tribofit::RateStateOptions driven_options_from(const Settings& s);
 
-/// Whether --start or --bounds name it for such a record, which --kind or --speed says it is.
+/// Whether --start or --bounds may name it: for such a record, which --kind, --speed or the file says it is.
 bool is_rate_state_parameter(const Settings& s, const std::string& name);
 
 /// "a=0.01,b=0.014,D_c=10um,k=0.002/um" by names, SI. Usage error for others.

@@ -108,6 +108,25 @@ TEST(VelocitySteps, HoldsAreRecognised) {
   EXPECT_GT(result["rate_state"]["healing"]["per_decade"]["value"].get<double>(), 0.003);
 }
 
+/// The file says by itself that it is of velocity steps, and only then has k a meaning.
+TEST(VelocitySteps, ValuesAreGivenWithoutTheKind) {
+  const Workshop shop;
+  ASSERT_EQ(shop.identify(kSimulated).status, 0);
+  ASSERT_EQ(shop.identify("--bounds k=0.002..0.002/um --start D_c=20um --json k.json steps.csv").status, 0);
+  const json held = json::parse(contents(shop / "k.json"))["fits"][0]["parameters"].back();
+  EXPECT_EQ(held["name"], "k");
+  EXPECT_NEAR(held["value"].get<double>(), 0.002, 1e-12);
+  shop.write("sliding.csv", [] {
+    std::string text = "time_s,mu,v_r_mm_s\n";
+    for (int i = 0; i < 200; ++i) text += std::to_string(0.1 * i) + ",0.6," + std::to_string(1 + i / 20) + "\n";
+    return text;
+  }());
+  const Outcome other = shop.identify("--never-sticks --bounds k=0.002..0.002/um sliding.csv");
+  EXPECT_NE(other.status, 0);
+  EXPECT_THAT(other.err, HasSubstr("k was given, which velocity steps and holds have"));
+  EXPECT_EQ(shop.identify("--kind sliding --bounds k=0.002..0.002/um sliding.csv").status, 2);
+}
+
 TEST(VelocitySteps, WhatCannotBeDoneIsSaid) {
   const Workshop shop;
   ASSERT_EQ(shop.identify(kSimulated).status, 0);
