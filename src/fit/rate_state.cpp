@@ -67,6 +67,7 @@ class Analysis {
     };
     chosen_ = with(std::max<std::size_t>(1, options_.states));
     if (options_.states != 0) return;
+    if (chosen_.fitted() && !(chosen_.best_law().fit.noise_time > 0)) return;  // nothing is left for a second
     StepsTogether two = with(2);
     if (!two.fitted()) return;
     if (chosen_.fitted()) {

@@ -167,9 +167,9 @@ class FitErrors {
  private:
   /// Columns of the times of steps that were fitted; false where sliding runs away.
   bool add_times(const std::vector<double>& p) {
-    for (const std::size_t s : problem_.steps()) {
-      if (!has_free_time(data_.steps[s])) continue;
-      const Eigen::VectorXd column = response_by_time(problem_, p, s);
+    for (const Turn& turn : free_turns(data_)) {
+      if (std::find(problem_.steps().begin(), problem_.steps().end(), turn.step) == problem_.steps().end()) continue;
+      const Eigen::VectorXd column = response_by_time(problem_, p, turn);
       if (column.size() == 0) return false;
       if (!(column.squaredNorm() > 0)) continue;  // nothing tells of it
       time_columns_.push_back(derivatives_.cols());

@@ -14,15 +14,13 @@ constexpr int kMostRounds = 8;
 /// By which a step is moved to see what changes, over the sampling interval.
 constexpr double kPartOfInterval = 0.02;
 
-/// Phase that begins at a step.
-std::size_t phase_behind(const RateStateData& data, std::size_t step) {
-  return data.before[step] + 1;
-}
-
-void set_step_time(RateStateData& data, std::size_t step, double time) {
-  const std::size_t phase = phase_behind(data, step);
-  data.phases[phase].begin = time;
-  data.steps[step].time = time;
+void set_time(RateStateData& data, const Turn& turn, double time) {
+  const double later = time - data.phases[turn.phase].begin;
+  data.phases[turn.phase].begin = time;
+  VelocityStep& step = data.steps[turn.step];
+  if (turn.ends_hold) step.hold += later;
+  if (!turn.ends_hold) step.time = time;
+  if (!turn.ends_hold && step.hold > 0) step.hold -= later;
   data.set_phase_displacements();
   for (VelocityStep& s : data.steps) s.displacement = data.displacement_at(s.time);
   for (std::size_t i = 0; i < data.size(); ++i) data.displacement[i] = data.displacement_at(data.time[i]);
@@ -30,22 +28,31 @@ void set_step_time(RateStateData& data, std::size_t step, double time) {
 
 }  // namespace
 
-bool has_free_time(const VelocityStep& step) {
-  return step.slack > 0 && step.hold == 0;
+std::vector<Turn> free_turns(const RateStateData& data) {
+  std::vector<Turn> out;
+  for (std::size_t s = 0; s < data.steps.size(); ++s) {
+    if (!(data.steps[s].slack > 0)) continue;
+    std::size_t phase = data.before[s] + 1;
+    out.push_back({s, phase});
+    if (!(data.steps[s].hold > 0)) continue;
+    while (phase < data.phases.size() && data.phases[phase].speed == 0) ++phase;
+    if (phase < data.phases.size()) out.push_back({s, phase, true});
+  }
+  return out;
 }
 
-Eigen::VectorXd response_by_time(const RateStateProblem& problem, const std::vector<double>& p, std::size_t step) {
-  const VelocityStep& at = problem.data().steps[step];
-  const double h = kPartOfInterval * at.interval;
+Eigen::VectorXd response_by_time(const RateStateProblem& problem, const std::vector<double>& p, const Turn& turn) {
+  const double at = problem.data().phases[turn.phase].begin;
+  const double h = kPartOfInterval * problem.data().steps[turn.step].interval;
   std::array<Eigen::VectorXd, 2> friction;
   for (std::size_t side = 0; side < 2; ++side) {
     RateStateData moved = problem.data();
-    set_step_time(moved, step, at.time + (side == 0 ? -h : h));
+    set_time(moved, turn, at + (side == 0 ? -h : h));
     if (!problem.on(moved).response(p.data(), friction[side], nullptr)) return {};
   }
   Eigen::VectorXd out = (friction[1] - friction[0]) / (2 * h);
   for (std::size_t k = 0; k < problem.steps().size(); ++k) {
-    if (problem.steps()[k] == step) continue;
+    if (problem.steps()[k] == turn.step) continue;
     for (std::size_t i = problem.row_of(k); i < problem.row_of(k + 1); ++i) out(static_cast<Eigen::Index>(i)) = 0;
   }
   return out;
@@ -53,13 +60,10 @@ Eigen::VectorXd response_by_time(const RateStateProblem& problem, const std::vec
 
 double refine_step_times(RateStateData& data, StateEvolution evolution, std::size_t states, Detrend detrend,
                          const RateStateUnknowns& unknowns, RateStateSolution& solution) {
-  std::vector<std::size_t> all(data.steps.size()), free;
+  std::vector<std::size_t> all(data.steps.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  for (const std::size_t s : all) {
-    if (has_free_time(data.steps[s])) free.push_back(s);
-  }
-  std::vector<double> stated;
-  for (const VelocityStep& step : data.steps) stated.push_back(step.time);
+  const std::vector<Turn> free = free_turns(data);
+  const std::vector<LoadPointPhase> stated = data.phases;
   for (int round = 0; round < kMostRounds && !free.empty() && solution.found; ++round) {
     const RateStateProblem problem(data, evolution, states, detrend, all);
     const auto rows = static_cast<Eigen::Index>(problem.count()), n = static_cast<Eigen::Index>(solution.p.size());
@@ -81,18 +85,19 @@ double refine_step_times(RateStateData& data, StateEvolution evolution, std::siz
         scale.asDiagonal() * least_squares_of_any_rank(design * scale.asDiagonal(), -residual).x;
     double moved = 0;
     for (std::size_t k = 0; k < free.size(); ++k) {
-      const VelocityStep& step = data.steps[free[k]];
-      const double from = stated[free[k]];
+      const VelocityStep& step = data.steps[free[k].step];
+      const double from = stated[free[k].phase].begin, now = data.phases[free[k].phase].begin;
       const double to =
-          std::clamp(step.time + change(n + static_cast<Eigen::Index>(k)), from - step.slack, from + step.slack);
-      moved = std::max(moved, std::abs(to - step.time) / step.interval);
-      set_step_time(data, free[k], to);
+          std::clamp(now + change(n + static_cast<Eigen::Index>(k)), from - step.slack, from + step.slack);
+      moved = std::max(moved, std::abs(to - now) / step.interval);
+      set_time(data, free[k], to);
     }
     solution = refine(RateStateProblem(data, evolution, states, detrend, all), solution.p, unknowns);
     if (moved < 0.02) break;
   }
   double largest = 0;
-  for (const std::size_t s : all) largest = std::max(largest, std::abs(data.steps[s].time - stated[s]));
+  for (const Turn& turn : free)
+    largest = std::max(largest, std::abs(data.phases[turn.phase].begin - stated[turn.phase].begin));
   return largest;
 }
 

@@ -4,12 +4,18 @@
 
 namespace tribofit::fit {
 
-/// Whether the time of a step is fitted: known within VelocityStep::slack alone.
-bool has_free_time(const VelocityStep& step);
+/// A change of the load point's speed at a step: at its time or, of a hold, where it goes on.
+struct Turn {
+  std::size_t step = 0, phase = 0;  ///< phase: the one that begins there
+  bool ends_hold = false;
+};
 
-/// Change of the simulated friction at the values of a problem with the time of one of its steps [1/s], by a
-/// difference; the rows of the other steps are zero. Empty where sliding runs away.
-Eigen::VectorXd response_by_time(const RateStateProblem& problem, const std::vector<double>& p, std::size_t step);
+/// Those whose times are fitted: known within VelocityStep::slack alone.
+std::vector<Turn> free_turns(const RateStateData& data);
+
+/// Change of the simulated friction at the values of a problem with the time of a turn [1/s], by a difference; the rows
+/// of other steps are zero. Empty where sliding runs away.
+Eigen::VectorXd response_by_time(const RateStateProblem& problem, const std::vector<double>& p, const Turn& turn);
 
 /// Moves the steps to the times at which the response fits best, within what is known of them (VelocityStep::slack),
 /// and refines the solution: Gauss-Newton steps in the parameters and the times together. Largest move [s].

@@ -71,9 +71,10 @@ class Together {
     const bool measured = source_ == LoadPointSource::displacement;
     RateStateData moved = out_.data;
     for (VelocityStep& step : moved.steps) {
-      if (measured) step.slack = kSlackOfDisplacement * std::min(step.time - step.from, step.to - step.time);
+      if (measured)
+        step.slack = kSlackOfDisplacement * std::min(step.time - step.from, step.to - step.time - step.hold);
     }
-    const auto free = static_cast<std::size_t>(std::count_if(moved.steps.begin(), moved.steps.end(), has_free_time));
+    const std::size_t free = free_turns(moved).size();
     if (free == 0) return;
     const StateEvolution evolution = options_.evolutions[law];
     RateStateSolution solution = searched_[law];
@@ -81,7 +82,7 @@ class Together {
     if (measured && !is_beyond_chance(moved, evolution, searched_[law], solution, free)) return;
     out_.data = std::move(moved);
     searched_.clear();
-    if (!(most > out_.data.steps.front().interval)) return;
+    if (!measured && !(most > out_.data.steps.front().interval)) return;
     constexpr std::array<const char*, 3> kKnown = {
         "their times are known to a tenth of the sliding beside them, as stated",
         "their times are known to a sample of the recorded speed",

@@ -13,6 +13,7 @@
 
 #include "fit/contact_apart.hpp"
 #include "tribofit/fit/rate_state.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 using namespace tribofit;
 
@@ -99,13 +100,20 @@ struct Tally {
 };
 
 Tally run(const Cell& cell, int records, unsigned cell_number) {
-  Tally tally;
-  for (int r = 0; r < records; ++r) {
-    std::mt19937_64 generator(1000003ULL * cell_number + static_cast<unsigned>(r));
-    const RateStateMachine machine = draw_machine(cell, generator);
+  const auto count = static_cast<std::size_t>(records);
+  std::vector<RateStateMachine> machines(count);
+  std::vector<RateStateAnalysis> analyses(count);
+  run_tasks(count, 0, [&](std::size_t r) {
+    std::mt19937_64 generator(1000003ULL * cell_number + r);
+    machines[r] = draw_machine(cell, generator);
     RateStateOptions options;
     options.each_step = false;
-    const RateStateAnalysis analysis = fit_rate_state(draw_motion(cell, machine, generator), options);
+    analyses[r] = fit_rate_state(draw_motion(cell, machines[r], generator), options);
+  });
+  Tally tally;
+  for (std::size_t r = 0; r < count; ++r) {
+    const RateStateMachine& machine = machines[r];
+    const RateStateAnalysis& analysis = analyses[r];
     if (!analysis.fitted()) continue;
     const RateStateFit& fit = analysis.fits[static_cast<std::size_t>(cell.evolution)];
     if (!fit.converged) continue;
@@ -180,6 +188,7 @@ states were chosen as they have. Moved: records whose steps were taken for later
                           cell("holds of 3 to 100 s, k = 5 k_c, coloured", 5, 1, 1e-4, 2e-4, true),
                           cell("2 and 10 um/s, up to 0.3 s late, white", 30, 5, 2e-4, 0, false, 0.3),
                           cell("2 and 10 um/s, up to 0.3 s late, coloured", 30, 5, 1e-4, 2e-4, false, 0.3),
+                          cell("holds of 3 to 100 s, up to 0.2 s late, coloured", 5, 1, 1e-4, 2e-4, true, 0.2),
                           cell("two states, white", 10, 5, 2e-4, 0, false, 0, 2),
                           cell("two states, coloured", 10, 5, 1e-4, 2e-4, false, 0, 2)}) {
       ++number;

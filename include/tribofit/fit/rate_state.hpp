@@ -115,7 +115,8 @@ struct RateStateAnalysis {
   std::vector<RateStateFit> fits;  ///< one for each law, all steps together
   std::size_t best = 0;            ///< in `fits`
   std::size_t states = 1;          ///< state variables of the fits
-  /// Chance that what one state leaves more than two is noise; NaN: not compared.
+  /// Chance that what one state leaves more than two is noise; NaN: not compared, as where white noise is all it
+  /// leaves.
   double states_p_value = std::numeric_limits<double>::quiet_NaN();
   double law_p_value =
       std::numeric_limits<double>::quiet_NaN();  ///< bound of the chance that the other law is true; NaN: not compared
