@@ -37,6 +37,21 @@ constexpr const char* kFilterInModel =
 enum class Purpose { anything, law, rig };
 
 /// The stages up to the cycles: read, move, segment, check.
+/// Values of velocity steps alone are given for a record of them.
+void refuse_given_of_steps(const IdentifyOptions& options, const Motion& motion) {
+  const std::vector<GivenParameter>& fitted = options.fit.given;
+  for (const GivenParameter& given : options.rate_state.given) {
+    const auto is_fitted = [&](const GivenParameter& g) {
+      return g.name == given.name || g.name.ends_with("." + given.name);
+    };
+    if (std::any_of(fitted.begin(), fitted.end(), is_fitted)) continue;
+    const std::string kind = motion.kind ? fmt::format("of the kind {}", to_string(*motion.kind)) : "none of either";
+    throw InputError(
+        fmt::format("{} is a parameter of velocity steps and holds; this record is {}", given.name, kind),
+        "leave it out of --start and --bounds, or state the kind of the record with --kind velocity-steps");
+  }
+}
+
 Identification prepare(const TraceInput& input, const IdentifyOptions& options, const MotionOptions& motion,
                        Purpose purpose) {
   Identification out;
@@ -54,6 +69,7 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
   if (out.motion.is_points()) out.duration = out.rate = std::nan("");
   stop_point();
   const bool driven = is_driven_in_steps(out.motion.kind);
+  if (!driven) refuse_given_of_steps(options, out.motion);
   const bool has_spectrum = !driven && !out.motion.is_points() && out.motion.kind != RecordKind::force_only;
   run_tasks(2, options.threads, [&](std::size_t k) {
     if (k == 0) out.segmentation = find_cycles(out.motion, options.threads);
@@ -112,27 +128,7 @@ Identification prepare_trace(const TraceInput& input, const IdentifyOptions& opt
   return prepare(input, kinematic, options.motion, Purpose::anything);
 }
 
-namespace {
-
-/// Values of velocity steps alone are given for a record of them.
-void refuse_given_of_steps(const IdentifyOptions& options, const Motion& motion) {
-  const std::vector<GivenParameter>& fitted = options.fit.given;
-  for (const GivenParameter& given : options.rate_state.given) {
-    const auto is_fitted = [&](const GivenParameter& g) {
-      return g.name == given.name || g.name.ends_with("." + given.name);
-    };
-    if (std::any_of(fitted.begin(), fitted.end(), is_fitted)) continue;
-    const std::string kind = motion.kind ? fmt::format("of the kind {}", to_string(*motion.kind)) : "none of them";
-    throw InputError(
-        fmt::format("{} was given, which velocity steps and holds have, and this record is {}", given.name, kind),
-        "leave it out of --start and --bounds, or state the kind of the record with --kind velocity-steps");
-  }
-}
-
-}  // namespace
-
 void fit_trace(const IdentifyOptions& options, Identification& trace) {
-  if (!is_driven_in_steps(trace.motion.kind)) refuse_given_of_steps(options, trace.motion);
   if (!is_driven_in_steps(trace.motion.kind)) return fit_trace(options, trace.motion, trace);
   trace.fits.clear();
   trace.best = 0;

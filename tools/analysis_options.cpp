@@ -244,7 +244,6 @@ IdentifyOptions options_from(const Settings& s) {
   options.read.kind = kind_from(s);
   options.read.spring = spring_from(s);
   options.read.load_point = load_point_from(s, options.read.kind);
-  options.rate_state = driven_options_from(s);
   if (!s.stick_below.empty()) options.motion.stick.below = positive(s.stick_below, Quantity::velocity, "--stick-below");
   if (options.read.kind && options.read.kind != RecordKind::stick_slip && !s.stick_below.empty())
     throw UsageError("--stick-below is for records that stick and slip, and excludes --never-sticks and other kinds");
@@ -252,6 +251,7 @@ IdentifyOptions options_from(const Settings& s) {
   read_laws(s.laws, options.laws);
   read_effects(s, options.laws, options.effects);
   options.fit.given = given_from(s, options.laws, options.effects);
+  options.rate_state = driven_options_from(s, options.fit.given);
   options.selection = selection_from(s);
 
   options.published_protocol = s.protocol == "both";

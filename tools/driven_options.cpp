@@ -28,9 +28,13 @@ constexpr std::array<Named, 6> kParameters = {{{"a", Quantity::dimensionless, "a
 
 constexpr Named kBaseFriction = {"mu_0", Quantity::dimensionless, "mu_0=0.6"};
 
+bool is_stated(const Settings& s) {
+  return names_load_point_speeds(s) || is_driven_in_steps(find_record_kind(s.kind));
+}
+
 /// What is stated, or else the file, may say that the load point is driven in steps.
 bool may_be_driven(const Settings& s) {
-  return s.kind.empty() || names_load_point_speeds(s) || is_driven_in_steps(find_record_kind(s.kind));
+  return s.kind.empty() || is_stated(s);
 }
 
 const Named* find_parameter(std::string_view name) {
@@ -57,22 +61,27 @@ GivenParameter& entry_named(std::string_view name, std::vector<GivenParameter>& 
 
 /// Calls take(parameter, text) for each "NAME=TEXT" that names one of these parameters.
 template <class Take>
-void for_each_given(const std::vector<std::string>& texts, Take&& take) {
+void for_each_given(const std::vector<std::string>& texts, const std::vector<GivenParameter>& fitted, Take&& take) {
   for (const std::string& text : texts) {
     for (const std::string& part : split(text, ',')) {
       const std::size_t equals = part.find('=');
       if (equals == std::string::npos) continue;
       const Named* parameter = find_parameter(trimmed(std::string_view(part).substr(0, equals)));
-      if (parameter != nullptr) take(*parameter, part.substr(equals + 1));
+      const auto is_its = [&](const GivenParameter& g) {
+        return g.name == parameter->name || g.name.ends_with("." + std::string(parameter->name));
+      };
+      if (parameter == nullptr || std::any_of(fitted.begin(), fitted.end(), is_its)) continue;
+      take(*parameter, part.substr(equals + 1));
     }
   }
 }
 
-void read_given(const Settings& s, std::vector<GivenParameter>& given) {
-  for_each_given(s.start_values, [&](const Named& parameter, const std::string& text) {
+/// fitted: what is given of other names.
+void read_given(const Settings& s, const std::vector<GivenParameter>& fitted, std::vector<GivenParameter>& given) {
+  for_each_given(s.start_values, fitted, [&](const Named& parameter, const std::string& text) {
     entry_named(parameter.name, given).start = parameter_value(text, parameter, "--start");
   });
-  for_each_given(s.bounds, [&](const Named& parameter, const std::string& text) {
+  for_each_given(s.bounds, fitted, [&](const Named& parameter, const std::string& text) {
     const std::size_t dots = text.find("..");
     if (dots == std::string::npos) throw UsageError("--bounds: '" + text + "' is not FROM..TO, as in D_c=2um..50um");
     std::string low = text.substr(0, dots), high = text.substr(dots + 2);
@@ -137,7 +146,7 @@ std::vector<LoadPointPhase> load_point_from(const Settings& s, std::optional<Rec
   return phases_from(s.speed, "--speed");
 }
 
-RateStateOptions driven_options_from(const Settings& s) {
+RateStateOptions driven_options_from(const Settings& s, const std::vector<GivenParameter>& fitted) {
   RateStateOptions options;
   if (!s.evolutions.empty()) options.evolutions.clear();
   for (const std::string& name : s.evolutions) {
@@ -154,6 +163,6 @@ RateStateOptions driven_options_from(const Settings& s) {
   if (!s.from.empty()) options.from = stated_value(s.from, Quantity::time, "--from", "s");
   if (!s.to.empty()) options.to = stated_value(s.to, Quantity::time, "--to", "s");
   if (!(options.from < options.to)) throw UsageError("--from and --to leave nothing between them");
-  if (may_be_driven(s)) read_given(s, options.given);
+  if (may_be_driven(s)) read_given(s, is_stated(s) ? std::vector<GivenParameter>() : fitted, options.given);
   return options;
 }

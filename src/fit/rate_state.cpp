@@ -1,7 +1,5 @@
 #include "tribofit/fit/rate_state.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -15,7 +13,6 @@
 #include "statistics/linear_algebra.hpp"
 #include "tribofit/statistics/distributions.hpp"
 #include "tribofit/statistics/parallel.hpp"
-#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
 
@@ -65,25 +62,30 @@ class Analysis {
     const auto with = [&](std::size_t states) {
       return fit_together(data, motion_.load_point_source, options_, states);
     };
-    chosen_ = with(std::max<std::size_t>(1, options_.states));
-    if (options_.states != 0) return;
-    if (chosen_.fitted() && !(chosen_.best_law().fit.noise_time > 0)) return;  // nothing is left for a second
+    const bool names_second = std::any_of(options_.given.begin(), options_.given.end(),
+                                          [](const GivenParameter& g) { return g.name == "b_2" || g.name == "D_c2"; });
+    chosen_ = with(options_.states != 0 ? options_.states : names_second ? 2 : 1);
+    if (options_.states != 0 || names_second) return;
+    if (chosen_.fitted() && !(chosen_.best_law().fit.noise_time > 0)) return;  // noise is all it leaves
     StepsTogether two = with(2);
     if (!two.fitted()) return;
     if (chosen_.fitted()) {
       out_.states_p_value = p_value_of_more(chosen_.problem(chosen_.best), chosen_.best_law().solution,
                                             two.problem(two.best), two.best_law().solution, two.best_law().fit, 2);
+      out_.second_state = SecondState::not_needed;
       if (!(out_.states_p_value < kChanceOfSecondState)) return;
     }
     const std::vector<FitParameter>& found = two.best_law().fit.parameters;
     const auto is_vague = [](const FitParameter& p) { return !(p.std_error < kVagueOfState * std::abs(p.value)); };
     if (std::any_of(found.begin() + 1, found.end() - 1, is_vague)) {
+      out_.second_state = SecondState::not_determined;
       if (chosen_.fitted())
         out_.messages.emplace_back(
-            "one state variable leaves more than noise, and these steps do not fix the distances of two: longer "
-            "sliding behind each step would");
+            "one state variable leaves more than noise, and these steps do not determine two: longer sliding behind "
+            "each step would");
       return;
     }
+    out_.second_state = SecondState::found;
     chosen_ = std::move(two);
   }
 

@@ -163,6 +163,10 @@ void set_displacement(RateStateData& data) {
 
 }  // namespace
 
+double shorter_beside(const VelocityStep& step) {
+  return std::min(step.time - step.from, step.to - step.time - step.hold);
+}
+
 void RateStateData::set_phase_displacements() {
   phase_displacement.assign(phases.size(), 0.0);
   for (std::size_t i = 1; i < phases.size(); ++i)
@@ -216,8 +220,7 @@ RateStateData rate_state_data(const Motion& motion, const RateStateOptions& opti
       continue;
     }
     step.interval = quantile(std::move(intervals), 0.1);
-    const double beside = std::min(step.time - step.from, step.to - step.time);
-    if (motion.load_point_source == LoadPointSource::stated) step.slack = kSlackOfStated * beside;
+    if (motion.load_point_source == LoadPointSource::stated) step.slack = kSlackOfStated * shorter_beside(step);
     if (motion.load_point_source == LoadPointSource::speed) step.slack = kSlackOfSpeed * around;
     data.begins.push_back(data.time.size());
     data.steps.push_back(step);

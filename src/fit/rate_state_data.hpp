@@ -30,6 +30,9 @@ struct RateStateData {
   double displacement_at(double t) const;
 };
 
+/// The shorter sliding beside a step, as far as its samples lie in it [s].
+double shorter_beside(const VelocityStep& step);
+
 /// Steps of a record with their samples. most: values of each step; neighbours are put together where there are more,
 /// the closer to a change of speed the fewer. What cannot be used is said in `messages`.
 RateStateData rate_state_data(const Motion& motion, const RateStateOptions& options, std::size_t most,

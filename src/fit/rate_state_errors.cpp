@@ -44,6 +44,7 @@ class FitErrors {
     if (valid_) {
       weighted_ = derivatives_;
       problem.weigh(weighted_);
+      valid_ = weighted_.allFinite();
     }
     root_count_.resize(rows_);
     for (Eigen::Index i = 0; i < rows_; ++i) {

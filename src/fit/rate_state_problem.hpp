@@ -32,7 +32,9 @@ class RateStateProblem : public Residuals {
   std::size_t states() const { return states_; }
   const std::vector<std::size_t>& steps() const { return steps_; }
   /// The same of other data with the same steps and values.
-  RateStateProblem on(const RateStateData& data) const { return {data, evolution_, states_, detrend_, steps_, first_}; }
+  RateStateProblem with_data(const RateStateData& data) const {
+    return {data, evolution_, states_, detrend_, steps_, first_};
+  }
   /// First row of the k-th step, and behind the last.
   std::size_t row_of(std::size_t k) const { return first_rows_[k]; }
   /// Value of the data that a row stands for.

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "limits.hpp"
 #include "tribofit/statistics/quantiles.hpp"
@@ -164,6 +165,7 @@ void apply_given(const std::vector<GivenParameter>& given, RateStateUnknowns& un
     const auto found =
         std::find_if(given.begin(), given.end(), [&](const GivenParameter& g) { return g.name == parameter.name; });
     if (found == given.end()) continue;
+    if (parameter.name != "a" && parameter.name != "k") unknowns.states_alike = false;
     if (found->bounds) {
       parameter.lower = found->bounds->lower / parameter.si;
       parameter.upper = found->bounds->upper / parameter.si;
@@ -270,7 +272,12 @@ RateStateSolution search(const RateStateData& data, StateEvolution evolution, st
   keep_best(kKept, kSecond);
   if (found.empty()) return {{}, 0, false, "from every start the simulated sliding ran away"};
   const auto best = std::min_element(found.begin(), found.end(), by_cost);
-  return refine(fine, best->p, unknowns);
+  RateStateSolution out = refine(fine, best->p, unknowns);
+  if (states == 2 && unknowns.states_alike && out.p.size() > 4 && out.p[2] > out.p[4]) {
+    std::swap(out.p[1], out.p[3]);
+    std::swap(out.p[2], out.p[4]);
+  }
+  return out;
 }
 
 RateStateSolution search_together(const RateStateData& data, StateEvolution evolution, std::size_t states,

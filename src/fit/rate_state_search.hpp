@@ -13,6 +13,7 @@ struct RateStateUnknowns {
   std::vector<bool> logarithmic;      ///< searched by its logarithm
   std::vector<double> lower, upper;   ///< of what is searched
   std::vector<std::vector<double>> starts;
+  bool states_alike = true;  ///< two of them differ by name alone: D_c is the shorter distance
 
   double value(std::size_t k, double searched) const;  ///< SI
   double searched(std::size_t k, double value) const;

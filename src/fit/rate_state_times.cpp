@@ -1,6 +1,7 @@
 #include "rate_state_times.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -13,10 +14,12 @@ namespace {
 constexpr int kMostRounds = 8;
 /// By which a step is moved to see what changes, over the sampling interval.
 constexpr double kPartOfInterval = 0.02;
+/// Of what is known of a time, beyond which it was held by it.
+constexpr double kAtLimit = 0.999;
 
 void set_time(RateStateData& data, const Turn& turn, double time) {
-  const double later = time - data.phases[turn.phase].begin;
-  data.phases[turn.phase].begin = time;
+  const double later = time - data.phases[turn.first].begin;
+  for (std::size_t i = turn.first; i <= turn.last; ++i) data.phases[i].begin += later;
   VelocityStep& step = data.steps[turn.step];
   if (turn.ends_hold) step.hold += later;
   if (!turn.ends_hold) step.time = time;
@@ -26,29 +29,47 @@ void set_time(RateStateData& data, const Turn& turn, double time) {
   for (std::size_t i = 0; i < data.size(); ++i) data.displacement[i] = data.displacement_at(data.time[i]);
 }
 
+/// Between its neighbours, and within what is known of it.
+double clamped(const RateStateData& data, const Turn& turn, double stated, double time) {
+  const VelocityStep& step = data.steps[turn.step];
+  const double passage = data.phases[turn.last].begin - data.phases[turn.first].begin;
+  const double end = turn.last + 1 < data.phases.size() ? data.phases[turn.last + 1].begin : step.to;
+  const double low = std::max(stated - step.slack, data.phases[turn.first - 1].begin + step.interval);
+  const double high = std::min(stated + step.slack, end - passage - step.interval);
+  return low < high ? std::clamp(time, low, high) : data.phases[turn.first].begin;
+}
+
 }  // namespace
 
 std::vector<Turn> free_turns(const RateStateData& data) {
   std::vector<Turn> out;
   for (std::size_t s = 0; s < data.steps.size(); ++s) {
-    if (!(data.steps[s].slack > 0)) continue;
-    std::size_t phase = data.before[s] + 1;
-    out.push_back({s, phase});
-    if (!(data.steps[s].hold > 0)) continue;
-    while (phase < data.phases.size() && data.phases[phase].speed == 0) ++phase;
-    if (phase < data.phases.size()) out.push_back({s, phase, true});
+    const VelocityStep& step = data.steps[s];
+    const std::size_t first = data.before[s] + 1;
+    std::size_t last = first;
+    while (last < data.phases.size() && data.phases[last].speed != step.after) ++last;
+    if (!(step.slack > 0) || last == data.phases.size()) continue;
+    std::size_t rest = first, on = last;
+    while (rest < last && data.phases[rest].speed != 0) ++rest;
+    while (on > first && data.phases[on - 1].speed != 0) --on;
+    if (step.hold > 0 && rest < last) {
+      out.push_back({s, first, rest, false});
+      out.push_back({s, on, last, true});
+    } else {
+      out.push_back({s, first, last, false});
+    }
   }
   return out;
 }
 
 Eigen::VectorXd response_by_time(const RateStateProblem& problem, const std::vector<double>& p, const Turn& turn) {
-  const double at = problem.data().phases[turn.phase].begin;
+  const double at = problem.data().phases[turn.first].begin;
   const double h = kPartOfInterval * problem.data().steps[turn.step].interval;
   std::array<Eigen::VectorXd, 2> friction;
   for (std::size_t side = 0; side < 2; ++side) {
     RateStateData moved = problem.data();
     set_time(moved, turn, at + (side == 0 ? -h : h));
-    if (!problem.on(moved).response(p.data(), friction[side], nullptr)) return {};
+    if (!problem.with_data(moved).response(p.data(), friction[side], nullptr)) return {};
   }
   Eigen::VectorXd out = (friction[1] - friction[0]) / (2 * h);
   for (std::size_t k = 0; k < problem.steps().size(); ++k) {
@@ -58,8 +79,8 @@ Eigen::VectorXd response_by_time(const RateStateProblem& problem, const std::vec
   return out;
 }
 
-double refine_step_times(RateStateData& data, StateEvolution evolution, std::size_t states, Detrend detrend,
-                         const RateStateUnknowns& unknowns, RateStateSolution& solution) {
+MovedSteps refine_step_times(RateStateData& data, StateEvolution evolution, std::size_t states, Detrend detrend,
+                             const RateStateUnknowns& unknowns, RateStateSolution& solution) {
   std::vector<std::size_t> all(data.steps.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   const std::vector<Turn> free = free_turns(data);
@@ -75,7 +96,7 @@ double refine_step_times(RateStateData& data, StateEvolution evolution, std::siz
     RowMatrix by_times(rows, static_cast<Eigen::Index>(free.size()));
     for (std::size_t k = 0; k < free.size(); ++k) {
       const Eigen::VectorXd column = response_by_time(problem, solution.p, free[k]);
-      if (column.size() == 0) return 0;
+      if (column.size() == 0) return {};
       by_times.col(static_cast<Eigen::Index>(k)) = column;
     }
     problem.weigh(by_times);
@@ -85,20 +106,23 @@ double refine_step_times(RateStateData& data, StateEvolution evolution, std::siz
         scale.asDiagonal() * least_squares_of_any_rank(design * scale.asDiagonal(), -residual).x;
     double moved = 0;
     for (std::size_t k = 0; k < free.size(); ++k) {
-      const VelocityStep& step = data.steps[free[k].step];
-      const double from = stated[free[k].phase].begin, now = data.phases[free[k].phase].begin;
+      const double now = data.phases[free[k].first].begin;
       const double to =
-          std::clamp(now + change(n + static_cast<Eigen::Index>(k)), from - step.slack, from + step.slack);
-      moved = std::max(moved, std::abs(to - now) / step.interval);
+          clamped(data, free[k], stated[free[k].first].begin, now + change(n + static_cast<Eigen::Index>(k)));
+      moved = std::max(moved, std::abs(to - now) / data.steps[free[k].step].interval);
       set_time(data, free[k], to);
     }
     solution = refine(RateStateProblem(data, evolution, states, detrend, all), solution.p, unknowns);
     if (moved < 0.02) break;
   }
-  double largest = 0;
-  for (const Turn& turn : free)
-    largest = std::max(largest, std::abs(data.phases[turn.phase].begin - stated[turn.phase].begin));
-  return largest;
+  MovedSteps out;
+  for (const Turn& turn : free) {
+    const VelocityStep& step = data.steps[turn.step];
+    const double by = std::abs(data.phases[turn.first].begin - stated[turn.first].begin);
+    out.largest = std::max(out.largest, by);
+    if (by > kAtLimit * step.slack) out.at_limit.push_back(step.time);
+  }
+  return out;
 }
 
 }  // namespace tribofit::fit

@@ -61,53 +61,59 @@ class Together {
   }
 
   /// Steps whose times are known to a sample or a second are moved to where the response fits best. A recorded
-  /// displacement says when the drive turns; where friction answers at another time beyond chance, that is when.
+  /// displacement says when the drive turns; where friction answers at other times beyond chance, those are the times.
+  /// Those of the law that then leaves less.
   void settle_times() {
-    std::size_t law = searched_.size();
-    for (std::size_t i = 0; i < searched_.size(); ++i) {
-      if (searched_[i].found && (law == searched_.size() || searched_[i].cost < searched_[law].cost)) law = i;
-    }
-    if (law == searched_.size()) return;
     const bool measured = source_ == LoadPointSource::displacement;
-    RateStateData moved = out_.data;
-    for (VelocityStep& step : moved.steps) {
-      if (measured)
-        step.slack = kSlackOfDisplacement * std::min(step.time - step.from, step.to - step.time - step.hold);
+    RateStateData free = out_.data;
+    for (VelocityStep& step : free.steps) {
+      if (measured) step.slack = kSlackOfDisplacement * shorter_beside(step);
     }
-    const std::size_t free = free_turns(moved).size();
-    if (free == 0) return;
-    const StateEvolution evolution = options_.evolutions[law];
-    RateStateSolution solution = searched_[law];
-    const double most = refine_step_times(moved, evolution, out_.states, out_.detrend, out_.unknowns, solution);
-    if (measured && !is_beyond_chance(moved, evolution, searched_[law], solution, free)) return;
-    out_.data = std::move(moved);
+    const std::size_t turns = free_turns(free).size();
+    if (turns == 0) return;
+    std::vector<RateStateData> moved(searched_.size(), free);
+    std::vector<RateStateSolution> behind = searched_;
+    std::vector<MovedSteps> moves(searched_.size());
+    run_tasks(searched_.size(), options_.threads, [&](std::size_t i) {
+      if (behind[i].found)
+        moves[i] =
+            refine_step_times(moved[i], options_.evolutions[i], out_.states, out_.detrend, out_.unknowns, behind[i]);
+    });
+    std::size_t best = searched_.size();
+    for (std::size_t i = 0; i < searched_.size(); ++i) {
+      const bool is_lower = behind[i].found && behind[i].cost < searched_[i].cost;
+      if (is_lower && (best == searched_.size() || behind[i].cost < behind[best].cost)) best = i;
+    }
+    if (best == searched_.size()) return;
+    if (measured && !is_beyond_chance(moved[best], options_.evolutions[best], searched_[best], behind[best], turns))
+      return;
+    out_.data = std::move(moved[best]);
+    out_.unknowns.starts.insert(out_.unknowns.starts.begin(), behind[best].p);
     searched_.clear();
-    if (!measured && !(most > out_.data.steps.front().interval)) return;
-    constexpr std::array<const char*, 3> kKnown = {
-        "their times are known to a tenth of the sliding beside them, as stated",
-        "their times are known to a sample of the recorded speed",
-        "friction answers there, not where the recorded displacement turns"};
-    out_.messages.push_back(fmt::format("steps were moved by up to {:.3g} s to where the response fits best: {}", most,
-                                        kKnown.at(static_cast<std::size_t>(source_))));
+    say_moved(moves[best], measured);
+  }
+
+  void say_moved(const MovedSteps& moves, bool measured) {
+    constexpr std::array<const char*, 3> kKnown = {"those stated", "the recorded speed shows",
+                                                   "those at which the recorded displacement turns"};
+    if (measured || moves.largest > out_.data.steps.front().interval)
+      out_.messages.push_back(
+          fmt::format("friction answers the steps at other times than {}: they were moved by up to {:.3g} s",
+                      kKnown.at(static_cast<std::size_t>(source_)), moves.largest));
+    if (moves.at_limit.empty()) return;
+    out_.messages.push_back(fmt::format(
+        "the step at {:.6g} s was moved as far as its time may be wrong, and friction may answer it later or "
+        "earlier still: the values are not to be trusted; check the column or the times of the load point",
+        moves.at_limit.front()));
   }
 
   bool is_beyond_chance(const RateStateData& moved, StateEvolution evolution, const RateStateSolution& before,
                         const RateStateSolution& behind, std::size_t free) const {
     if (!behind.found) return false;
     const RateStateProblem fewer(out_.data, evolution, out_.states, out_.detrend, out_.all());
-    const RateStateProblem more = fewer.on(moved);
+    const RateStateProblem more = fewer.with_data(moved);
     const RateStateFit fit = fit_from(more, out_.unknowns, behind);
     return fit.converged && p_value_of_more(fewer, before, more, behind, fit, free) < kChanceOfMovedStep;
-  }
-
-  /// Two states are alike but for their names: D_c is the shorter distance, where the user gives neither values.
-  void name_shorter_first(std::vector<double>& p) const {
-    if (out_.states != 2 || p.size() < 5 || p[2] <= p[4]) return;
-    const bool named = std::any_of(options_.given.begin(), options_.given.end(),
-                                   [](const GivenParameter& g) { return g.name != "a" && g.name != "k"; });
-    if (named) return;
-    std::swap(p[1], p[3]);
-    std::swap(p[2], p[4]);
   }
 
   void fit_laws() {
@@ -116,7 +122,6 @@ class Together {
       LawFit& law = out_.laws[i];
       law.evolution = options_.evolutions[i];
       law.solution = searched_.empty() ? searched(law.evolution, out_.detrend) : searched_[i];
-      name_shorter_first(law.solution.p);
       law.fit = fit_from(out_.problem(i), out_.unknowns, law.solution);
       add_messages(law.fit);
     });

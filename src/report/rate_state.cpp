@@ -90,11 +90,14 @@ void add_law(const RateStateAnalysis& analysis, std::size_t k, const Motion& mot
 
 /// That a second state variable was asked for by the data, or not.
 void add_states(const RateStateAnalysis& analysis, ReportSection& section) {
-  if (!std::isfinite(analysis.states_p_value)) return;
-  section.plain(analysis.states == 2
-                    ? fmt::format("A second state variable describes these steps better than one ({}).",
-                                  p_value_text(analysis.states_p_value))
-                    : "One state variable describes these steps; --states 2 shows a second.");
+  if (analysis.second_state == SecondState::found) {
+    section.plain(std::isfinite(analysis.states_p_value)
+                      ? fmt::format("A second state variable describes these steps better than one ({}).",
+                                    p_value_text(analysis.states_p_value))
+                      : "Two state variables describe these steps; no fit of one converged.");
+  }
+  if (analysis.second_state == SecondState::not_needed)
+    section.plain("A second state variable describes these steps no better than chance would (--states 2 shows it).");
 }
 
 ReportTable steps_table(const RateStateAnalysis& analysis) {

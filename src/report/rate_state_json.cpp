@@ -104,8 +104,9 @@ Json rate_state_json(const RateStateAnalysis& analysis, const Motion& motion) {
   Json json =
       object("v0_um_s", analysis.reference_speed / kUmPerSecond, "v0_source", analysis.reference_source,
              "load_point_source", source_text(motion.load_point_source), "detrend", to_string(analysis.detrend),
-             "normal_stress_MPa", motion.normal_stress.value / 1e6, "states", analysis.states, "states_p_value",
-             analysis.states_p_value, "law_p_value", analysis.law_p_value, "sharing_p_value", analysis.sharing_p_value);
+             "normal_stress_MPa", motion.normal_stress.value / 1e6, "states",
+             analysis.fits.empty() ? Json(nullptr) : Json(analysis.states), "states_p_value", analysis.states_p_value,
+             "law_p_value", analysis.law_p_value, "sharing_p_value", analysis.sharing_p_value);
   json["stability"] = analysis.fitted() ? stability_json(analysis.fits[analysis.best]) : Json(nullptr);
   json["steps"] = std::move(steps);
   json["healing"] = analysis.healing ? healing_json(*analysis.healing) : Json(nullptr);

@@ -118,12 +118,18 @@ TEST(VelocitySteps, ValuesAreGivenWithoutTheKind) {
   EXPECT_NEAR(held["value"].get<double>(), 0.002, 1e-12);
   shop.write("sliding.csv", [] {
     std::string text = "time_s,mu,v_r_mm_s\n";
-    for (int i = 0; i < 200; ++i) text += std::to_string(0.1 * i) + ",0.6," + std::to_string(1 + i / 20) + "\n";
+    for (int i = 0; i < 200; ++i)
+      text += std::to_string(0.1 * i) + (i % 7 < 3 ? ",0.6," : ",0.605,") + std::to_string(1 + i / 20) + "\n";
     return text;
   }());
   const Outcome other = shop.identify("--never-sticks --bounds k=0.002..0.002/um sliding.csv");
   EXPECT_NE(other.status, 0);
-  EXPECT_THAT(other.err, HasSubstr("k was given, which velocity steps and holds have"));
+  EXPECT_THAT(other.err, HasSubstr("k is a parameter of velocity steps and holds"));
+  EXPECT_NE(shop.identify("diagnose --never-sticks --bounds k=0.002..0.002/um sliding.csv").status, 0);
+  // Names that a formula has are its own.
+  const Outcome formula =
+      shop.identify("--never-sticks --formula 'more = k*v; k=0.001' --bounds more.k=-1..1 sliding.csv");
+  EXPECT_EQ(formula.status, 0) << formula.err;
   EXPECT_EQ(shop.identify("--kind sliding --bounds k=0.002..0.002/um sliding.csv").status, 2);
 }
 

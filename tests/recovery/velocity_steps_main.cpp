@@ -28,12 +28,12 @@ struct Cell {
   double step;         ///< ratio of the speeds
   double white, slow;  ///< noise [1]
   bool holds = false;
-  double late = 0;         ///< friction answers each step by up to this later than the load point is said to turn [s]
+  double late = 0;         ///< by up to which friction answers a step after the load point is recorded to turn [s]
   std::size_t states = 1;  ///< the second as b_2 of 0.4 to 0.8 b, over 10 D_c
 };
 
-/// 2 um/s and `step` times as fast in turn, each over at least 12 D_c; or four holds of 3 to 100 s. Of two states steps
-/// up and down, over at least 14 times the longer distance.
+/// 2 um/s and `step` times as fast in turn, each over at least 12 D_c; or four holds of 3 to 100 s. Of two states one
+/// step up, over at least 14 times the longer distance, and one down.
 std::vector<LoadPointPhase> phases_of(const Cell& cell) {
   std::vector<LoadPointPhase> out = {{0, 2 * kMicro}};
   if (cell.states == 2) return {{0, 2 * kMicro}, {60, 10 * kMicro}, {200, 2 * kMicro}};
@@ -186,6 +186,7 @@ states were chosen as they have. Moved: records whose steps were taken for later
                                  : cell("2 and 3 um/s, k = 1.1 k_c, coloured", 1.1, 1.5, 1e-4, 2e-4),
                           cell("2 and 20 um/s, k = 5 k_c, coloured", 5, 10, 1e-4, 2e-4),
                           cell("holds of 3 to 100 s, k = 5 k_c, coloured", 5, 1, 1e-4, 2e-4, true),
+                          cell("2 and 10 um/s, up to 0.05 s late, white", 30, 5, 2e-4, 0, false, 0.05),
                           cell("2 and 10 um/s, up to 0.3 s late, white", 30, 5, 2e-4, 0, false, 0.3),
                           cell("2 and 10 um/s, up to 0.3 s late, coloured", 30, 5, 1e-4, 2e-4, false, 0.3),
                           cell("holds of 3 to 100 s, up to 0.2 s late, coloured", 5, 1, 1e-4, 2e-4, true, 0.2),

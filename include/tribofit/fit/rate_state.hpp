@@ -106,6 +106,14 @@ struct RateStateCurve {
   std::vector<double> other;                                ///< the best fit of the other law; empty: there is none
 };
 
+/// What the steps say of a second state variable.
+enum class SecondState {
+  not_compared,   ///< the number was stated, or one leaves white noise alone
+  not_needed,     ///< it describes them no better than chance would
+  found,          ///< it does, and was taken
+  not_determined  ///< it does, and they do not determine what it adds
+};
+
 /// All that velocity steps and holds say.
 struct RateStateAnalysis {
   double reference_speed = 0;  ///< v0 [m/s]
@@ -115,6 +123,7 @@ struct RateStateAnalysis {
   std::vector<RateStateFit> fits;  ///< one for each law, all steps together
   std::size_t best = 0;            ///< in `fits`
   std::size_t states = 1;          ///< state variables of the fits
+  SecondState second_state = SecondState::not_compared;
   /// Chance that what one state leaves more than two is noise; NaN: not compared, as where white noise is all it
   /// leaves.
   double states_p_value = std::numeric_limits<double>::quiet_NaN();
@@ -132,8 +141,10 @@ struct RateStateAnalysis {
 
 /// Fits a, b, D_c and the stiffness k per normal force to the whole simulated response of a record of velocity steps or
 /// holds (`motion.load_point` says how the load point moved): d mu/dt = k (v_lp - v), from steady sliding at the first
-/// speed. Constants and lines of each stretch are projected out (G. H. Golub, V. Pereyra, SIAM J. Numer. Anal. 10
-/// (1973) 413), so that the search has no more unknowns however many steps there are.
+/// speed. Steps are moved to where friction answers them where that is another time beyond chance, and a second state
+/// variable is taken where it is asked for beyond chance. Constants and lines of each stretch are projected out (G. H.
+/// Golub, V. Pereyra, SIAM J. Numer. Anal. 10 (1973) 413), so that the search has no more unknowns however many steps
+/// there are.
 ///
 /// Statistical errors: least squares, whose covariance is computed with noise that is white in part and in part wanders
 /// with a correlation exp(-dt/tau), sizes and tau by restricted maximum likelihood from what is left; a, b with normal
