@@ -188,6 +188,8 @@ inline constexpr std::size_t kValuesOfStep = 1500, kValuesOfStepSearch = 150;
 inline constexpr double kAdapted = 5, kMuchLeft = 1.15, kChanceOfExcess = 1e-3, kFewestOfExcess = 5;
 /// What wanders over the noise of a sample from which on it is said where that cannot be judged.
 inline constexpr double kMuchWander = 4;
+/// Decades that the times of holds must span for a healing rate: a factor of two.
+inline constexpr double kLeastDecades = 0.3;
 /// A hold loads the contact as if the speed had changed by e^4.6 (a hundredfold), to begin with.
 inline constexpr double kHoldAsRatio = 4.6;
 /// Second D_c over the first, to begin with.

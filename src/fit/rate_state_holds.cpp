@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limits.hpp"
 #include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit::fit {
@@ -87,8 +88,10 @@ std::optional<Healing> healing_of(const RateStateData& data, const RateStateProb
     out.holds.push_back(hold);
   }
   if (out.holds.empty()) return std::nullopt;
-  out.per_decade = slope_of(decades, measured);
-  out.per_decade_model = slope_of(decades, simulated).value;
+  const auto [shortest, longest] = std::minmax_element(decades.begin(), decades.end());
+  const bool differ = *longest - *shortest > kLeastDecades;
+  out.per_decade = differ ? slope_of(decades, measured) : Estimate{std::nan(""), std::nan(""), 1};
+  if (differ) out.per_decade_model = slope_of(decades, simulated).value;
   return out;
 }
 

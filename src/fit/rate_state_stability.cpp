@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 
 #include "limits.hpp"
 #include "rate_state_errors.hpp"
@@ -7,6 +8,7 @@
 namespace tribofit::fit {
 
 void set_stability(std::size_t states, const std::vector<double>& p, double freedom, RateStateFit& fit) {
+  constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
   const auto n = static_cast<Eigen::Index>(p.size());
   const Eigen::Map<const RowMatrix> covariance(fit.covariance.data(), n, n);
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
@@ -15,6 +17,12 @@ void set_stability(std::size_t states, const std::vector<double>& p, double free
   for (std::size_t i = 0; i < states; ++i) {
     gradient(static_cast<Eigen::Index>(1 + 2 * i)) = -1;
     value -= p[1 + 2 * i];
+  }
+  for (std::size_t i = 0; i < 1 + states; ++i) {
+    if (!fit.parameters[i == 0 ? 0 : 2 * i - 1].at_bound) continue;
+    fit.rate_dependence = {kNotKnown, kNotKnown, freedom};
+    fit.rate_dependence_lower95 = fit.rate_dependence_upper95 = kNotKnown;
+    return;
   }
   const double quantile = t_quantile_95(freedom);
   fit.rate_dependence = {value, std::sqrt(gradient.dot(covariance * gradient)), freedom};

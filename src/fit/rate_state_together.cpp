@@ -79,10 +79,15 @@ class Together {
         moves[i] =
             refine_step_times(moved[i], options_.evolutions[i], out_.states, out_.detrend, out_.unknowns, behind[i]);
     });
+    double least = std::numeric_limits<double>::infinity();  // of any law, its steps where they are said to be
+    for (const RateStateSolution& one : searched_) {
+      if (one.found) least = std::min(least, one.cost);
+    }
     std::size_t best = searched_.size();
     for (std::size_t i = 0; i < searched_.size(); ++i) {
-      const bool is_lower = behind[i].found && behind[i].cost < searched_[i].cost;
-      if (is_lower && (best == searched_.size() || behind[i].cost < behind[best].cost)) best = i;
+      if (!behind[i].found || !(behind[i].cost < std::min(least, searched_[i].cost))) continue;
+      least = behind[i].cost;
+      best = i;
     }
     if (best == searched_.size()) return;
     if (measured && !is_beyond_chance(moved[best], options_.evolutions[best], searched_[best], behind[best], turns))

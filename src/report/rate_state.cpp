@@ -54,8 +54,9 @@ ReportTable parameter_table_of(const RateStateFit& fit, const Motion& motion) {
     if (!p.determined) row[1] = "not determined", row[2] = row[3] = "";
     table.rows.push_back(std::move(row));
   }
-  table.rows.push_back(row_of("a - b", fit.rate_dependence.value, fit.rate_dependence.std_error,
-                              fit.rate_dependence_lower95, fit.rate_dependence_upper95, "1", ""));
+  if (std::isfinite(fit.rate_dependence.value))
+    table.rows.push_back(row_of("a - b", fit.rate_dependence.value, fit.rate_dependence.std_error,
+                                fit.rate_dependence_lower95, fit.rate_dependence_upper95, "1", ""));
   if (std::isfinite(fit.stiffness_ratio)) {
     const double half = 0.25 * std::log(fit.stiffness_ratio_upper95 / fit.stiffness_ratio_lower95);
     table.rows.push_back(row_of("k/k_c", fit.stiffness_ratio, fit.stiffness_ratio * half, fit.stiffness_ratio_lower95,
@@ -137,7 +138,9 @@ ReportTable each_table(const RateStateAnalysis& analysis, const Motion& motion) 
     }
     for (const FitParameter& p : fit.parameters)
       row.push_back(p.determined ? with_error(shown(p, p.value), shown(p, p.std_error)) : "not determined");
-    row.push_back(with_error(fit.rate_dependence.value, fit.rate_dependence.std_error));
+    row.push_back(std::isfinite(fit.rate_dependence.value)
+                      ? with_error(fit.rate_dependence.value, fit.rate_dependence.std_error)
+                      : "-");
     row.push_back(std::isfinite(fit.stiffness_ratio) ? significant(fit.stiffness_ratio, 3) : "-");
     row.push_back(significant(fit.rmse, 3));
     table.rows.push_back(std::move(row));
@@ -272,6 +275,8 @@ void add_rate_state(const RateStateAnalysis& analysis, const Motion& motion, Rep
 std::string verdict_on(const RateStateAnalysis& analysis) {
   if (!analysis.fitted()) return capitalised(analysis.reason) + ".";
   const RateStateFit& fit = analysis.fits[analysis.best];
+  if (!std::isfinite(fit.rate_dependence.value))
+    return "Whether steady friction rises or falls with speed is not known from these data: a or b ended at a bound.";
   const std::string rate = with_error(fit.rate_dependence.value, fit.rate_dependence.std_error);
   if (fit.rate_dependence_lower95 > 0)
     return fmt::format("Steady friction rises with speed (a - b = {}): sliding is stable on any machine, however soft.",

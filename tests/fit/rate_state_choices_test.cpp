@@ -124,6 +124,29 @@ TEST(RateState, ATimeThatIsHeldByWhatIsKnownOfItIsSaid) {
   EXPECT_THAT(analysis.messages, ::testing::Contains(::testing::HasSubstr("as far as its time may be wrong")));
 }
 
+TEST(RateState, HoldsOfOneLengthHaveNoHealingRate) {
+  const std::vector<LoadPointPhase> phases = {{0, 10e-6},  {20, 0},  {30, 10e-6},     {60, 0},
+                                              {70, 10e-6}, {100, 0}, {110.001, 10e-6}};
+  const Motion motion = motion_from(machine_of(StateEvolution::ageing, 5), phases, times_until(150, 20), 1e-4);
+  const RateStateAnalysis analysis = fit_rate_state(motion, together());
+  ASSERT_TRUE(analysis.healing.has_value());
+  EXPECT_EQ(analysis.healing->holds.size(), 3U);
+  EXPECT_TRUE(std::isnan(analysis.healing->per_decade.value));
+}
+
+/// A bound that holds b says nothing of whether friction falls with speed.
+TEST(RateState, AtABoundStabilityIsNotKnown) {
+  RateStateOptions options = together();
+  options.given = {{"b", std::nullopt, GivenParameter::Bounds{0.03, 0.05}}};
+  const Motion motion = motion_from(machine_of(StateEvolution::ageing, 5), kSteps, times_until(250, 20), 1e-4);
+  const RateStateAnalysis analysis = fit_rate_state(motion, options);
+  ASSERT_TRUE(analysis.fitted()) << analysis.reason;
+  const RateStateFit& fit = analysis.fits[analysis.best];
+  ASSERT_TRUE(fit.parameters[1].at_bound);
+  EXPECT_TRUE(std::isnan(fit.rate_dependence.value));
+  EXPECT_TRUE(std::isnan(fit.stiffness_ratio));
+}
+
 /// What is fitted are means of neighbours; what is left is that of the samples.
 TEST(RateState, ErrorsAreThoseOfTheSamples) {
   const Motion motion = motion_from(machine_of(StateEvolution::ageing, 5), kSteps, times_until(250, 200), 2e-4);

@@ -59,7 +59,7 @@ struct RateStateFit {
   std::optional<std::size_t> step;
   std::vector<FitParameter> parameters;  ///< a, b, D_c, k; with two states b_2 and D_c2 behind D_c
   std::vector<double> covariance;        ///< of ln D and ln k, and the others as they are, row by row
-  Estimate rate_dependence;              ///< a - b (of all states) [1]
+  Estimate rate_dependence;              ///< a - b (of all states) [1]; NaN where a bound holds one of them
   double rate_dependence_lower95 = 0, rate_dependence_upper95 = 0;
   /// (b - a)/D_c of one state [1/m], below which steady sliding is unstable, and k over it; NaN where friction does not
   /// fall with speed, or with two states.
