@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -39,17 +38,11 @@ enum class Purpose { anything, law, rig };
 /// The stages up to the cycles: read, move, segment, check.
 /// Values of velocity steps alone are given for a record of them.
 void refuse_given_of_steps(const IdentifyOptions& options, const Motion& motion) {
-  const std::vector<GivenParameter>& fitted = options.fit.given;
-  for (const GivenParameter& given : options.rate_state.given) {
-    const auto is_fitted = [&](const GivenParameter& g) {
-      return g.name == given.name || g.name.ends_with("." + given.name);
-    };
-    if (std::any_of(fitted.begin(), fitted.end(), is_fitted)) continue;
-    const std::string kind = motion.kind ? fmt::format("of the kind {}", to_string(*motion.kind)) : "none of either";
-    throw InputError(
-        fmt::format("{} is a parameter of velocity steps and holds; this record is {}", given.name, kind),
-        "leave it out of --start and --bounds, or state the kind of the record with --kind velocity-steps");
-  }
+  if (options.rate_state.given.empty()) return;
+  throw InputError(fmt::format("{} is a parameter of velocity steps and holds; this record is of {}",
+                               options.rate_state.given.front().name,
+                               motion.kind ? fmt::format("the kind {}", to_string(*motion.kind)) : "another kind"),
+                   "leave it out of --start and --bounds, or state the kind of the record with --kind velocity-steps");
 }
 
 Identification prepare(const TraceInput& input, const IdentifyOptions& options, const MotionOptions& motion,

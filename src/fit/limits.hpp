@@ -199,6 +199,8 @@ inline constexpr double kSecondDistance = 8;
 inline constexpr double kSlackOfStated = 0.1, kSlackOfSpeed = 1;
 /// The same, over the sliding, where a recorded displacement turns: drives run up, catch up and have play, so that
 /// friction answered up to 0.004 of the sliding later on real records; and the chance from which on it is moved.
+/// Smaller: a later answer is taken for a softer machine; larger: what else friction does beside a step is taken for a
+/// later one.
 inline constexpr double kSlackOfDisplacement = 0.05, kChanceOfMovedStep = 1e-3;
 /// Chance that noise makes two states describe the steps so much better, below which they do, and error of b or D_c of
 /// either over its value above which nothing is known of it. The chance is small as noise that wanders is much like the

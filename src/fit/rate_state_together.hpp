@@ -36,8 +36,8 @@ struct StepsTogether {
 StepsTogether fit_together(const RateStateData& data, LoadPointSource source, const RateStateOptions& options,
                            std::size_t states);
 
-/// Chance that what `fewer` leaves more than `more` is noise, by the likelihood with the noise of `more` and as many
-/// values as `more` has fitted beyond it; NaN where it cannot be computed.
+/// Nominal chance that what `fewer` leaves more than `more` is noise, by the likelihood with the noise of `more` and as
+/// many values as `more` has fitted beyond it; NaN where it cannot be computed.
 double p_value_of_more(const RateStateProblem& fewer, const RateStateSolution& fewer_solution,
                        const RateStateProblem& more, const RateStateSolution& more_solution, const RateStateFit& fit,
                        std::size_t values);

@@ -34,10 +34,11 @@ struct RateStateOptions {
   double reference_speed = 0;  ///< v0 [m/s]; 0: the speed of the load point before the first step
   double from = -std::numeric_limits<double>::infinity();  ///< [s]: nothing before is used
   double to = std::numeric_limits<double>::infinity();     ///< [s]: nothing after is used
-  std::vector<GivenParameter> given = {};                  ///< starts and bounds of a, b, D_c, k (b_2, D_c2), SI
-  std::vector<Selection::Stretch> excluded = {};           ///< samples that are left out
-  bool each_step = true;                                   ///< every step by itself, too
-  int threads = 1;  ///< 0: as many as there are; the result does not depend on it
+  std::vector<GivenParameter> given =
+      {};  ///< starts and bounds of a, b, D_c, k (b_2, D_c2), SI; other kinds refuse them
+  std::vector<Selection::Stretch> excluded = {};  ///< samples that are left out
+  bool each_step = true;                          ///< every step by itself, too
+  int threads = 1;                                ///< 0: as many as there are; the result does not depend on it
 };
 
 /// A change of the speed of the load point with the samples that show what friction does: from within the sliding
