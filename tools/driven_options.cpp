@@ -42,9 +42,17 @@ const Named* find_parameter(std::string_view name) {
   return at == kParameters.end() ? nullptr : &*at;
 }
 
+/// A bare number would be one of metres: a million times what is meant.
+void require_unit(std::string_view text, const std::string& option, const char* example) {
+  const std::string_view spelled = trimmed(text);
+  if (spelled.find_first_not_of("+-.0123456789eE ") == std::string_view::npos)
+    throw UsageError(option + ": '" + std::string(spelled) + "' has no unit; give it, as in " + example);
+}
+
 /// "0.005/um" is 0.005 1/um.
 double parameter_value(const std::string& text, const Named& parameter, const std::string& option) {
   std::string spelled(trimmed(text));
+  if (parameter.quantity != Quantity::dimensionless) require_unit(spelled, option, parameter.example);
   const std::size_t slash = spelled.find('/');
   if (parameter.quantity == Quantity::inverse_length && slash != std::string::npos && slash > 0 &&
       spelled.find_first_not_of("+-.0123456789eE ") == slash)
@@ -130,6 +138,7 @@ std::vector<LoadPointPhase> phases_from(const std::string& text, const std::stri
       throw UsageError(option + ": '" + part + "' is not TIME:SPEED, as in 0s:2um/s,60s:10um/s");
     const double begin = stated_value(part.substr(0, colon), Quantity::time, option, "s");
     const std::string speed(trimmed(part.substr(colon + 1)));
+    if (speed != "0") require_unit(speed, option, "0s:2um/s,60s:10um/s");
     const double value = speed == "0" ? 0 : stated_value(speed, Quantity::velocity, option);
     if (!phases.empty() && !(begin > phases.back().begin))
       throw UsageError(option + ": '" + part + "' does not come after the time before it");
@@ -146,6 +155,13 @@ std::vector<LoadPointPhase> load_point_from(const Settings& s, std::optional<Rec
   return phases_from(s.speed, "--speed");
 }
 
+double reference_speed_from(const std::string& text) {
+  require_unit(text, "--reference-speed", "1um/s");
+  const double speed = stated_value(text, Quantity::velocity, "--reference-speed");
+  if (!(speed > 0)) throw UsageError("--reference-speed is not above zero");
+  return speed;
+}
+
 RateStateOptions driven_options_from(const Settings& s, const std::vector<GivenParameter>& fitted) {
   RateStateOptions options;
   if (!s.evolutions.empty()) options.evolutions.clear();
@@ -157,8 +173,7 @@ RateStateOptions driven_options_from(const Settings& s, const std::vector<GivenP
   options.states = static_cast<std::size_t>(s.states);
   options.detrend = find_detrend(s.detrend).value_or(Detrend::automatic);
   if (!s.reference_speed.empty()) {
-    options.reference_speed = stated_value(s.reference_speed, Quantity::velocity, "--reference-speed");
-    if (!(options.reference_speed > 0)) throw UsageError("--reference-speed is not above zero");
+    options.reference_speed = reference_speed_from(s.reference_speed);
   }
   if (!s.from.empty()) options.from = stated_value(s.from, Quantity::time, "--from", "s");
   if (!s.to.empty()) options.to = stated_value(s.to, Quantity::time, "--to", "s");

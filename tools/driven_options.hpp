@@ -19,6 +19,9 @@ std::vector<tribofit::LoadPointPhase> phases_from(const std::string& text, const
 /// Speeds of the load point as --speed states them; none where it does not. Usage error: one speed alone.
 std::vector<tribofit::LoadPointPhase> load_point_from(const Settings& s, std::optional<tribofit::RecordKind> kind);
 
+/// --reference-speed, v0.
+double reference_speed_from(const std::string& text);
+
 /// How velocity steps and holds are fitted. fitted: values given of the laws, whose names are theirs where --kind and
 /// --speed leave the kind to the file.
 tribofit::RateStateOptions driven_options_from(const Settings& s, const std::vector<tribofit::GivenParameter>& fitted);

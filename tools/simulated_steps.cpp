@@ -47,9 +47,8 @@ RateStateMachine machine_of(const StepsRequest& request, double first_speed) {
   machine.parameters.distance = {value("D_c", 10 * kMicro), value("D_c2", 100 * kMicro)};
   machine.parameters.stiffness = value("k", 0.002 / kMicro);
   machine.base_friction = value("mu_0", 0.6);
-  machine.reference_speed = request.reference_speed.empty()
-                                ? first_speed
-                                : stated_value(request.reference_speed, Quantity::velocity, "--reference-speed");
+  machine.reference_speed =
+      request.reference_speed.empty() ? first_speed : reference_speed_from(request.reference_speed);
   return machine;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "kinematics/limits.hpp"
@@ -15,37 +16,61 @@ namespace tribofit::fit {
 
 namespace {
 
-/// A stretch of sliding at one speed.
+/// A stretch of sliding at one speed, or nearly one.
 struct Sliding {
-  std::size_t phase = 0;
+  std::size_t phase = 0, last_phase = 0;
   double begin = 0, end = 0, speed = 0;
   double duration() const { return end - begin; }
   double length() const { return speed * duration(); }
 };
 
-/// Last of the stretches from `first` on through which a drive passes from the speed before to the one behind: short
-/// beside both, in time and in length, and without a rest; none: `first` is sliding of its own.
-std::optional<std::size_t> end_of_passage(const std::vector<Sliding>& all, std::size_t first) {
-  std::optional<std::size_t> last;
+/// Whether a drive runs up or down from one sliding to the other: a ramp is a flight of small stairs in the record, up
+/// or down alone, each of them short beside both.
+bool is_ramp(std::span<const Sliding> stairs, const Sliding& before, const Sliding& behind) {
+  const double way = behind.speed - before.speed, shorter = std::min(before.duration(), behind.duration());
+  double speed = before.speed;
+  for (const Sliding& stair : stairs) {
+    if ((stair.speed - speed) * way <= 0 || stair.duration() > kStairBeside * shorter) return false;
+    speed = stair.speed;
+  }
+  return stairs.size() > 1 && (behind.speed - speed) * way > 0 &&
+         stairs.back().end - stairs.front().begin < kRampBeside * shorter;
+}
+
+/// Whether what lies between two slidings is short beside both, in time and in length.
+bool is_short(std::span<const Sliding> between, const Sliding& before, const Sliding& behind) {
   double duration = 0, length = 0;
-  const auto is_short = [&](const Sliding& beside) {
-    return duration < kinematics::kPassageBeside * beside.duration() &&
-           length < kinematics::kPassageBeside * beside.length();
-  };
-  for (std::size_t i = first; i + 1 < all.size() && all[i].phase == all[first - 1].phase + 1 + i - first; ++i) {
-    duration += all[i].duration();
-    length += all[i].length();
-    if (!is_short(all[first - 1])) break;
-    if (all[i + 1].phase == all[i].phase + 1 && is_short(all[i + 1])) last = i;
+  for (const Sliding& s : between) duration += s.duration(), length += s.length();
+  return duration < kinematics::kPassageBeside * std::min(before.duration(), behind.duration()) &&
+         length < kinematics::kPassageBeside * std::min(before.length(), behind.length());
+}
+
+/// Last of the stretches from `first` on through which a drive passes, without a rest, from the speed before to the one
+/// behind; none: `first` is sliding of its own.
+std::optional<std::size_t> end_of_passage(const std::vector<Sliding>& all, std::size_t first) {
+  const Sliding& before = all[first - 1];
+  std::optional<std::size_t> last;
+  for (std::size_t i = first; i + 1 < all.size() && all[i].phase == all[i - 1].last_phase + 1; ++i) {
+    if (all[i].end - all[first].begin > kRampBeside * before.duration()) break;
+    const auto between = std::span(all).subspan(first, i + 1 - first);
+    if (all[i + 1].phase == all[i].last_phase + 1 &&
+        (is_short(between, before, all[i + 1]) || is_ramp(between, before, all[i + 1])))
+      last = i;
   }
   return last;
 }
 
+/// Sliding between rests; neighbours of nearly the same speed are one.
 std::vector<Sliding> slidings_of(const std::vector<LoadPointPhase>& phases, double end) {
   std::vector<Sliding> out;
   for (std::size_t i = 0; i < phases.size(); ++i) {
     const double until = i + 1 < phases.size() ? phases[i + 1].begin : end;
-    if (phases[i].speed > 0) out.push_back({i, phases[i].begin, until, phases[i].speed});
+    if (!(phases[i].speed > 0)) continue;
+    const bool goes_on = !out.empty() && out.back().last_phase + 1 == i &&
+                         std::abs(std::log(phases[i].speed / out.back().speed)) < kNoStep;
+    if (!goes_on) out.push_back({i, i, phases[i].begin, until, phases[i].speed});
+    out.back().last_phase = i;
+    out.back().end = until;
   }
   return out;
 }
@@ -89,7 +114,7 @@ void find_steps(const std::vector<Sliding>& slidings, RateStateData& data) {
   for (std::size_t j = 0; j + 1 < slidings.size(); ++j) {
     const Sliding &from = slidings[j], &to = slidings[j + 1];
     VelocityStep step;
-    step.time = from.end;
+    step.time = step.recorded = from.end;
     step.before = from.speed;
     step.after = to.speed;
     const double rest = rest_between(data.phases, from.end, to.begin);
@@ -104,6 +129,7 @@ void find_steps(const std::vector<Sliding>& slidings, RateStateData& data) {
     step.to = to.end - (j + 2 < slidings.size() ? (1 - kPartOfSlidingBehind) * to.duration() : 0);
     data.steps.push_back(step);
     data.before.push_back(from.phase);
+    data.change.push_back(from.last_phase + 1);
   }
 }
 
@@ -192,7 +218,7 @@ RateStateData rate_state_data(const Motion& motion, const RateStateOptions& opti
   data.reference_speed = options.reference_speed > 0 ? options.reference_speed : data.phases.front().speed;
 
   std::vector<VelocityStep> steps = std::exchange(data.steps, {});
-  const std::vector<std::size_t> before = std::exchange(data.before, {});
+  const std::vector<std::size_t> before = std::exchange(data.before, {}), change = std::exchange(data.change, {});
   for (std::size_t s = 0; s < steps.size(); ++s) {
     VelocityStep& step = steps[s];
     step.from = std::max(step.from, begin);
@@ -225,6 +251,7 @@ RateStateData rate_state_data(const Motion& motion, const RateStateOptions& opti
     data.begins.push_back(data.time.size());
     data.steps.push_back(step);
     data.before.push_back(before[s]);
+    data.change.push_back(change[s]);
     samples.count.assign(samples.time.size(), 1.0);
     samples.scatter.assign(samples.time.size(), 0.0);
     add_values(data, samples, most, data);

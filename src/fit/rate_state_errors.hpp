@@ -10,6 +10,11 @@ namespace tribofit::fit {
 RateStateFit fit_from(const RateStateProblem& problem, const RateStateUnknowns& unknowns,
                       const RateStateSolution& solution);
 
+/// Nominal chance that noise as the fit has it, and no answer to the steps, leaves friction as far from steady as it
+/// is; NaN where it cannot be computed.
+double p_value_of_no_answer(const RateStateProblem& problem, const RateStateSolution& solution,
+                            const RateStateFit& fit);
+
 /// By how much the logarithm of the likelihood of what the other solution leaves is below that of the best, with the
 /// noise of the fit made of the best; NaN where it cannot be computed.
 double log_likelihood_below(const RateStateProblem& best, const RateStateSolution& best_solution,

@@ -45,7 +45,7 @@ std::vector<Turn> free_turns(const RateStateData& data) {
   std::vector<Turn> out;
   for (std::size_t s = 0; s < data.steps.size(); ++s) {
     const VelocityStep& step = data.steps[s];
-    const std::size_t first = data.before[s] + 1;
+    const std::size_t first = data.change[s];
     std::size_t last = first;
     while (last < data.phases.size() && data.phases[last].speed != step.after) ++last;
     if (!(step.slack > 0) || last == data.phases.size()) continue;

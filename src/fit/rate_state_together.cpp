@@ -105,7 +105,8 @@ class Together {
       out_.messages.push_back(
           fmt::format("friction answers the steps at other times than {}: they were moved by up to {:.3g} s",
                       kKnown.at(static_cast<std::size_t>(source_)), moves.largest));
-    if (moves.at_limit.empty()) return;
+    out_.at_limit = !moves.at_limit.empty();
+    if (!out_.at_limit) return;
     out_.messages.push_back(fmt::format(
         "the step at {:.6g} s was moved as far as its time may be wrong, and friction may answer it later or "
         "earlier still: the values are not to be trusted; check the column or the times of the load point",

@@ -103,8 +103,16 @@ void add_states(const RateStateAnalysis& analysis, ReportSection& section) {
 
 ReportTable steps_table(const RateStateAnalysis& analysis) {
   ReportTable table("Steps");
-  table.numbers({"no."}).numbers({"time [s]", "from [um/s]", "to [um/s]"}).numbers({"hold [s]"}, 1);
-  table.numbers({"samples"}, 1).numbers({"interval [s]"}, 2).numbers({"mu_0"}, 1).numbers({"trend"}, 2);
+  const bool moved = std::any_of(analysis.steps.begin(), analysis.steps.end(),
+                                 [](const VelocityStep& step) { return step.time_std_error > 0; });
+  table.numbers({"no."}).numbers({"time [s]"});
+  if (moved) table.numbers({"recorded [s]"});
+  table.numbers({"from [um/s]", "to [um/s]"})
+      .numbers({"hold [s]"}, 1)
+      .numbers({"samples"}, 1)
+      .numbers({"interval [s]"}, 2)
+      .numbers({"mu_0"}, 1)
+      .numbers({"trend"}, 2);
   const RateStateFit* fit = analysis.fitted() ? &analysis.fits[analysis.best] : nullptr;
   for (std::size_t s = 0; s < analysis.steps.size(); ++s) {
     const VelocityStep& step = analysis.steps[s];
@@ -116,9 +124,13 @@ ReportTable steps_table(const RateStateAnalysis& analysis) {
       if (analysis.detrend != Detrend::none)
         trend = with_error(fit->trend[s].value / unit, fit->trend[s].std_error / unit) + (over_time ? " 1/s" : " 1/mm");
     }
-    table.rows.push_back({std::to_string(s + 1), significant(step.time, 6), significant(step.before / kMicrometre, 4),
-                          significant(step.after / kMicrometre, 4), step.hold > 0 ? significant(step.hold, 4) : "",
-                          grouped(step.samples), significant(step.interval, 3), base, trend});
+    std::vector<std::string> row = {std::to_string(s + 1)};
+    row.push_back(step.time_std_error > 0 ? with_error(step.time, step.time_std_error) : significant(step.time, 6));
+    if (moved) row.push_back(significant(step.recorded, 6));
+    row.insert(row.end(), {significant(step.before / kMicrometre, 4), significant(step.after / kMicrometre, 4),
+                           step.hold > 0 ? significant(step.hold, 4) : "", grouped(step.samples),
+                           significant(step.interval, 3), base, trend});
+    table.rows.push_back(std::move(row));
   }
   return table;
 }
@@ -275,6 +287,10 @@ void add_rate_state(const RateStateAnalysis& analysis, const Motion& motion, Rep
 std::string verdict_on(const RateStateAnalysis& analysis) {
   if (!analysis.fitted()) return capitalised(analysis.reason) + ".";
   const RateStateFit& fit = analysis.fits[analysis.best];
+  if (!analysis.is_answered())
+    return fmt::format(
+        "Friction answers the steps by no more than noise would ({}): these data say nothing of the law.",
+        p_value_text(analysis.answer_p_value));
   if (!std::isfinite(fit.rate_dependence.value))
     return "Whether steady friction rises or falls with speed is not known from these data: a or b ended at a bound.";
   const std::string rate = with_error(fit.rate_dependence.value, fit.rate_dependence.std_error);

@@ -46,8 +46,9 @@ Json stability_json(const RateStateFit& fit) {
 
 Json step_json(const RateStateAnalysis& analysis, std::size_t s, const Motion& motion) {
   const VelocityStep& step = analysis.steps[s];
-  Json json = object("time_s", step.time, "from_um_s", step.before / kUmPerSecond, "to_um_s", step.after / kUmPerSecond,
-                     "hold_s", step.hold, "samples", step.samples, "window_s", interval_json(step.from, step.to));
+  Json json = object("time_s", step.time, "time_std_error_s", step.time_std_error, "recorded_time_s", step.recorded,
+                     "from_um_s", step.before / kUmPerSecond, "to_um_s", step.after / kUmPerSecond, "hold_s", step.hold,
+                     "samples", step.samples, "window_s", interval_json(step.from, step.to));
   const bool whole = analysis.fitted();
   const bool over_time = analysis.detrend == Detrend::time;
   json["mu_0"] = whole ? estimate_of(analysis.fits[analysis.best].base_friction[s]) : Json(nullptr);
@@ -101,13 +102,13 @@ Json rate_state_fits_json(const RateStateAnalysis& analysis, const Motion& motio
 Json rate_state_json(const RateStateAnalysis& analysis, const Motion& motion) {
   Json steps = Json::array();
   for (std::size_t s = 0; s < analysis.steps.size(); ++s) steps.push_back(step_json(analysis, s, motion));
-  Json json =
-      object("v0_um_s", analysis.reference_speed / kUmPerSecond, "v0_source", analysis.reference_source,
-             "load_point_source", source_text(motion.load_point_source), "detrend", to_string(analysis.detrend),
-             "normal_stress_MPa", motion.normal_stress.value / 1e6, "states",
-             analysis.fits.empty() ? Json(nullptr) : Json(analysis.states), "states_p_value", analysis.states_p_value,
-             "law_p_value", analysis.law_p_value, "sharing_p_value", analysis.sharing_p_value);
-  json["stability"] = analysis.fitted() ? stability_json(analysis.fits[analysis.best]) : Json(nullptr);
+  Json json = object("v0_um_s", analysis.reference_speed / kUmPerSecond, "v0_source", analysis.reference_source,
+                     "load_point_source", source_text(motion.load_point_source), "detrend", to_string(analysis.detrend),
+                     "normal_stress_MPa", motion.normal_stress.value / 1e6, "states",
+                     analysis.fits.empty() ? Json(nullptr) : Json(analysis.states), "states_p_value",
+                     analysis.states_p_value, "answer_p_value", analysis.answer_p_value, "law_p_value",
+                     analysis.law_p_value, "sharing_p_value", analysis.sharing_p_value);
+  json["stability"] = analysis.is_answered() ? stability_json(analysis.fits[analysis.best]) : Json(nullptr);
   json["steps"] = std::move(steps);
   json["healing"] = analysis.healing ? healing_json(*analysis.healing) : Json(nullptr);
   json["messages"] = analysis.messages;

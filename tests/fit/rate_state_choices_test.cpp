@@ -21,8 +21,13 @@ TEST(RateState, StepsThatFrictionAnswersLateAreMoved) {
     const RateStateAnalysis analysis = fit_rate_state(motion, together());
     ASSERT_TRUE(analysis.fitted()) << analysis.reason;
     expect_recovered(analysis.fits[evolution == StateEvolution::ageing ? 0 : 1], machine, 0.03, 0.05);
-    for (std::size_t s = 0; s < analysis.steps.size(); ++s)
-      EXPECT_NEAR(analysis.steps[s].time, late[s + 1].begin, 0.01) << s;
+    for (std::size_t s = 0; s < analysis.steps.size(); ++s) {
+      const VelocityStep& step = analysis.steps[s];
+      EXPECT_EQ(step.recorded, kSteps[s + 1].begin);
+      EXPECT_NEAR(step.time, late[s + 1].begin, 0.01) << s;
+      EXPECT_GT(step.time_std_error, 0) << s;
+      EXPECT_NEAR(step.time, late[s + 1].begin, 4 * step.time_std_error) << s;
+    }
     EXPECT_THAT(analysis.messages, ::testing::Contains(::testing::HasSubstr("moved by up to 0.2 s")));
   }
 }
@@ -52,6 +57,64 @@ TEST(RateState, StepsThatFrictionAnswersAtOnceStayWhereTheyAre) {
       motion_from(machine_of(StateEvolution::ageing, 20), kSteps, times_until(250, 20), 1e-4), together());
   ASSERT_TRUE(analysis.fitted()) << analysis.reason;
   for (std::size_t s = 0; s < analysis.steps.size(); ++s) EXPECT_EQ(analysis.steps[s].time, kSteps[s + 1].begin) << s;
+}
+
+/// A drive that runs up over seconds is a flight of stairs in its record, and its last ones nearly are sliding.
+TEST(RateState, RampsAndRunUpsMakeOneStep) {
+  for (const bool settles : {false, true}) {
+    const RateStateMachine machine = machine_of(StateEvolution::ageing, 5);
+    const auto stairs = [&](double width) {
+      std::vector<LoadPointPhase> out = {{0, 2e-6}};
+      for (const auto& [begin, from, to] : {std::array{60.0, 2e-6, 10e-6}, std::array{100.0, 10e-6, 2e-6}}) {
+        for (double t = 0; t < (settles ? 12 : 6); t += width) {
+          const double part = settles ? 1 - std::exp(-(t + 0.5 * width) / 1.5) : (t + 0.5 * width) / 6;
+          out.push_back({begin + t, from + (to - from) * part});
+        }
+        out.push_back({begin + (settles ? 12 : 6), to});
+      }
+      return out;
+    };
+    Motion motion = motion_from(machine, stairs(0.05), times_until(160, 20), 1e-4);
+    motion.load_point = stairs(0.5);
+    const RateStateAnalysis analysis = fit_rate_state(motion, together());
+    ASSERT_TRUE(analysis.fitted()) << analysis.reason;
+    ASSERT_EQ(analysis.steps.size(), 2U);
+    EXPECT_NEAR(analysis.steps[0].before, 2e-6, 1e-8);
+    EXPECT_NEAR(analysis.steps[0].after, 10e-6, 5e-7);
+    EXPECT_TRUE(analysis.is_answered());
+    expect_recovered(analysis.fits[0], machine, 0.03, 0.05);
+  }
+}
+
+/// Slides of one length, up and down in threefold steps, are all slides.
+TEST(RateState, SlidesOfOneLengthAreNoRamp) {
+  std::vector<LoadPointPhase> phases;
+  double t = 0;
+  for (const double speed : {1e-6, 3e-6, 10e-6, 30e-6, 10e-6, 3e-6, 1e-6}) {
+    phases.push_back({t, speed});
+    t += 100e-6 / speed;
+  }
+  const RateStateAnalysis analysis =
+      fit_rate_state(motion_from(machine_of(StateEvolution::ageing, 5), phases, times_until(t, 20), 1e-4), together());
+  EXPECT_EQ(analysis.steps.size(), 6U);
+}
+
+TEST(RateState, NoiseThatAnswersNothingSaysNothing) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    Motion motion;
+    motion.time = times_until(140, 20);
+    motion.relative_velocity.assign(motion.size(), 0.0);
+    motion.load_point = {{0, 2e-6}, {60, 20e-6}, {80, 2e-6}};
+    std::mt19937_64 generator(seed);
+    std::normal_distribution<double> normal;
+    double wanders = 0;
+    for (std::size_t i = 0; i < motion.time.size(); ++i) {
+      wanders += -0.02 * wanders + (seed % 2 == 0 ? 4e-5 : 0.0) * normal(generator);
+      motion.friction.push_back(0.6 + 2e-4 * normal(generator) + wanders);
+    }
+    const RateStateAnalysis analysis = fit_rate_state(motion, together());
+    EXPECT_FALSE(analysis.is_answered()) << seed << ": p " << analysis.answer_p_value;
+  }
 }
 
 /// Where a line over the displacement can pass for the slow state, its sign hangs on the second.

@@ -44,13 +44,15 @@ struct RateStateOptions {
 /// A change of the speed of the load point with the samples that show what friction does: from within the sliding
 /// before it until sliding before the next one. A hold is one of them, from where the load point stops.
 struct VelocityStep {
-  double time = 0;               ///< at which the speed changes [s]
+  double time = 0;               ///< at which the speed changes [s], as friction answers it
+  double recorded = 0;           ///< the same as it was stated or recorded [s]
+  double time_std_error = 0;     ///< of `time` [s]; 0: it was not fitted
   double before = 0, after = 0;  ///< speeds of the load point [m/s]; of a hold those of sliding around it
   double hold = 0;               ///< time at rest [s]; 0: none
   double displacement = 0;       ///< of the load point at `time` [m]
   double from = 0, to = 0;       ///< times between which its samples lie [s]
   std::size_t samples = 0;
-  double slack = 0;     ///< by which `time` may be wrong [s]; 0: it is known
+  double slack = 0;     ///< by which `recorded` may be wrong [s]; 0: it is known
   double interval = 0;  ///< shortest sampling interval behind the step [s]
 };
 
@@ -78,6 +80,7 @@ struct RateStateFit {
   double held_out_rmse = std::numeric_limits<double>::quiet_NaN();  ///< steps that were left out of the fit
   double degrees_of_freedom = 1;
   std::size_t samples = 0;
+  std::vector<double> time_std_error;     ///< of each step of the fit [s]; 0: its time was not fitted
   std::vector<Correlation> correlations;  ///< above 0.9 in size
   std::vector<std::string> messages;
   bool converged = false;
@@ -115,6 +118,10 @@ enum class SecondState {
   not_determined  ///< it does, and they do not determine what it adds
 };
 
+/// Chance that what answers the steps is noise, above which nothing is said of the law. It is nominal: D_c and k are
+/// free to fit what noise there is.
+inline constexpr double kChanceOfNoAnswer = 1e-4;
+
 /// All that velocity steps and holds say.
 struct RateStateAnalysis {
   double reference_speed = 0;  ///< v0 [m/s]
@@ -128,6 +135,8 @@ struct RateStateAnalysis {
   /// Chance that what one state leaves more than two is noise; NaN: not compared, as where white noise is all it
   /// leaves.
   double states_p_value = std::numeric_limits<double>::quiet_NaN();
+  /// Nominal chance that noise alone answers the steps so well; NaN: not compared.
+  double answer_p_value = std::numeric_limits<double>::quiet_NaN();
   double law_p_value =
       std::numeric_limits<double>::quiet_NaN();  ///< bound of the chance that the other law is true; NaN: not compared
   std::vector<RateStateFit> each;                ///< of each step by itself, the best law
@@ -138,6 +147,8 @@ struct RateStateAnalysis {
   std::string reason;  ///< why nothing was fitted; empty: it was
 
   bool fitted() const { return !fits.empty() && fits[best].converged; }
+  /// Friction answers the steps by more than noise would.
+  bool is_answered() const { return fitted() && !(answer_p_value > kChanceOfNoAnswer); }
 };
 
 /// Fits a, b, D_c and the stiffness k per normal force to the whole simulated response of a record of velocity steps or
