@@ -1,11 +1,42 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "limits.hpp"
 #include "rate_state_errors.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit::fit {
+
+namespace {
+
+/// k_c, and k over it with the interval that errors of ln(k/k_c) make. One state: where friction falls beyond doubt.
+void set_critical_stiffness(std::size_t states, const std::vector<double>& p, double quantile,
+                            const Eigen::Map<const RowMatrix>& covariance, RateStateFit& fit) {
+  const auto logarithm = [&](const std::vector<double>& at) {
+    const RateStateParameters<double> found = parameters_from(at.data(), states);
+    return std::log(found.stiffness / critical_stiffness(found, states));
+  };
+  const double value = logarithm(p);
+  if (!std::isfinite(value) || (states == 1 && !(fit.rate_dependence_upper95 < 0))) return;
+  Eigen::VectorXd gradient(static_cast<Eigen::Index>(p.size()));
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    constexpr double kPart = 1e-5;
+    const double h = kPart * std::max(std::abs(p[i]), 1e-3);
+    std::vector<double> up = p, down = p;
+    up[i] += h, down[i] -= h;
+    gradient(static_cast<Eigen::Index>(i)) = (logarithm(up) - logarithm(down)) / (2 * h);
+  }
+  const double half = quantile * std::sqrt(gradient.dot(covariance * gradient));
+  if (!std::isfinite(half)) return;
+  fit.critical_stiffness = critical_stiffness(parameters_from(p.data(), states), states);
+  fit.stiffness_ratio = std::exp(value);
+  fit.stiffness_ratio_lower95 = std::exp(value - half);
+  fit.stiffness_ratio_upper95 = std::exp(value + half);
+}
+
+}  // namespace
 
 void set_stability(std::size_t states, const std::vector<double>& p, double freedom, RateStateFit& fit) {
   constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
@@ -28,14 +59,7 @@ void set_stability(std::size_t states, const std::vector<double>& p, double free
   fit.rate_dependence = {value, std::sqrt(gradient.dot(covariance * gradient)), freedom};
   fit.rate_dependence_lower95 = value - quantile * fit.rate_dependence.std_error;
   fit.rate_dependence_upper95 = value + quantile * fit.rate_dependence.std_error;
-  if (states != 1 || !(fit.rate_dependence_upper95 < 0)) return;
-  const RateStateParameters<double> found = parameters_from(p.data(), 1);
-  fit.critical_stiffness = critical_stiffness(found.a, found.b[0], found.distance[0]);
-  fit.stiffness_ratio = found.stiffness / fit.critical_stiffness;
-  gradient << 1 / (found.b[0] - found.a), -1 / (found.b[0] - found.a), 1, 1;  // of ln(k D/(b - a))
-  const double half = quantile * std::sqrt(gradient.dot(covariance * gradient));
-  fit.stiffness_ratio_lower95 = fit.stiffness_ratio * std::exp(-half);
-  fit.stiffness_ratio_upper95 = fit.stiffness_ratio * std::exp(half);
+  set_critical_stiffness(states, p, quantile, covariance, fit);
 }
 
 void set_correlations(RateStateFit& fit) {

@@ -1,5 +1,7 @@
 #include "tribofit/friction/state_evolution.hpp"
 
+#include <cmath>
+
 namespace tribofit {
 
 namespace {
@@ -40,6 +42,18 @@ std::vector<std::string> state_evolution_names() {
   std::vector<std::string> names;
   for (const StateEvolution evolution : state_evolutions) names.emplace_back(to_string(evolution));
   return names;
+}
+
+double critical_stiffness(const RateStateParameters<double>& parameters, std::size_t states) {
+  const auto& [a, b, distance, stiffness] = parameters;
+  if (states == 1) return critical_stiffness(a, b[0], distance[0]);
+  // With rates in units of the speed, l_i = 1/D_i, disturbances grow as the roots of a s^3 + (k - p) s^2 + (k (l_1 +
+  // l_2)
+  // - q) s + k l_1 l_2; at the critical stiffness the product of the middle ones is that of the outer ones.
+  const double first = 1 / distance[0], second = 1 / distance[1], sum = first + second, product = first * second;
+  const double p = b[0] * first + b[1] * second - a * sum, q = (b[0] + b[1] - a) * product;
+  const double half = 0.5 * (q + p * sum + a * product) / sum, square = half * half - p * q / sum;
+  return square < 0 ? 0 : half + std::sqrt(square);
 }
 
 }  // namespace tribofit

@@ -42,6 +42,10 @@ std::vector<std::string> row_of(const std::string& name, double value, double er
           std::move(remarks)};
 }
 
+std::string critical_stiffness_text(const RateStateFit& fit) {
+  return fit.parameters.size() > 4 ? "k_c of two states" : "k_c = (b - a)/D_c";
+}
+
 ReportTable parameter_table_of(const RateStateFit& fit, const Motion& motion) {
   ReportTable table;
   table.text({"parameter"}).numbers({"value"}).numbers({"std error"}, 1).numbers({"relative"}, 2);
@@ -60,7 +64,7 @@ ReportTable parameter_table_of(const RateStateFit& fit, const Motion& motion) {
   if (std::isfinite(fit.stiffness_ratio)) {
     const double half = 0.25 * std::log(fit.stiffness_ratio_upper95 / fit.stiffness_ratio_lower95);
     table.rows.push_back(row_of("k/k_c", fit.stiffness_ratio, fit.stiffness_ratio * half, fit.stiffness_ratio_lower95,
-                                fit.stiffness_ratio_upper95, "1", "k_c = (b - a)/D_c"));
+                                fit.stiffness_ratio_upper95, "1", critical_stiffness_text(fit)));
   }
   return table;
 }
@@ -199,13 +203,17 @@ void add_which_law(const RateStateAnalysis& analysis, ReportSection& section) {
     return;
   }
   constexpr double kTold = 0.05;
+  const bool told = analysis.law_p_value < kTold;
   section.plain(
-      analysis.law_p_value < kTold
-          ? fmt::format("The {} law describes these steps better than the {} law ({}, {}).", to_string(best.evolution),
-                        to_string(other.evolution), figures, p_value)
-          : fmt::format("These data do not distinguish the {} law from the {} law ({}, {}). Steps of a factor "
-                        "of ten or more, up and down, would.",
-                        to_string(best.evolution), to_string(other.evolution), figures, p_value));
+      told ? fmt::format("The {} law describes these steps better than the {} law ({}, {}).", to_string(best.evolution),
+                         to_string(other.evolution), figures, p_value)
+           : fmt::format("These data do not distinguish the {} law from the {} law ({}, {}). Steps of a factor "
+                         "of ten or more, up and down, would.",
+                         to_string(best.evolution), to_string(other.evolution), figures, p_value));
+  if (!told && std::isfinite(other.rate_dependence.value))
+    section.plain(fmt::format("The result below is that of the {} law; by the {} law a - b = {}.",
+                              to_string(best.evolution), to_string(other.evolution),
+                              with_error(other.rate_dependence.value, other.rate_dependence.std_error)));
 }
 
 }  // namespace
@@ -294,18 +302,19 @@ std::string verdict_on(const RateStateAnalysis& analysis) {
   if (!std::isfinite(fit.rate_dependence.value))
     return "Whether steady friction rises or falls with speed is not known from these data: a or b ended at a bound.";
   const std::string rate = with_error(fit.rate_dependence.value, fit.rate_dependence.std_error);
-  if (fit.rate_dependence_lower95 > 0)
+  if (fit.rate_dependence_lower95 > 0 && !std::isfinite(fit.stiffness_ratio))
     return fmt::format("Steady friction rises with speed (a - b = {}): sliding is stable on any machine, however soft.",
                        rate);
-  if (!(fit.rate_dependence_upper95 < 0))
+  const bool rises = fit.rate_dependence_lower95 > 0;  // and the quick one of two states alone falls
+  if (!rises && !(fit.rate_dependence_upper95 < 0))
     return fmt::format("Whether steady friction rises or falls with speed is not known from these data (a - b = {}).",
                        rate);
-  std::string text = fmt::format("Steady friction falls with speed (a - b = {})", rate);
+  std::string text = fmt::format("Steady friction {} with speed (a - b = {})", rises ? "rises" : "falls", rate);
   if (!std::isfinite(fit.stiffness_ratio)) return text + ": sliding is not stable on a machine that is soft enough.";
   const FitParameter& distance = fit.parameters[2];
   text += fmt::format(
-      ": sliding is unstable, and sticks and slips, on a machine softer than k_c = (b - a)/D_c = {} 1/um"
-      " per normal force",
+      "{} sliding is unstable, and sticks and slips, on a machine softer than {}{} {} 1/um per normal force",
+      rises ? ", and yet" : ":", critical_stiffness_text(fit), fit.parameters.size() > 4 ? "," : " =",
       significant(fit.critical_stiffness * kMicrometre, 3));
   if (!fit.parameters.back().determined || !distance.determined) return text + "; k of this one is not resolved.";
   const std::string ratio = significant(fit.stiffness_ratio, 3);

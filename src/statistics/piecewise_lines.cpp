@@ -158,29 +158,50 @@ std::vector<std::size_t> corners_near(std::span<const double> t, std::span<const
   return out;
 }
 
-/// How plain a corner is, over the least that counts: by its change of slope and by its distance from one line.
-double plainness(std::span<const double> t, const Stretch& one, const Stretch& two, double noise) {
+/// How plain a corner is, over the least that counts: by its change of slope, over `least_change` of the larger one,
+/// and by its distance from one line.
+double plainness(std::span<const double> t, const Stretch& one, const Stretch& two, double noise, double least_change) {
   const double change = std::abs(one.line.slope() - two.line.slope());
   const double larger = std::max(std::abs(one.line.slope()), std::abs(two.line.slope()));
   const double first = t[two.begin] - t[one.begin], second = t[two.end - 1] - t[two.begin];
   if (!(change > 0)) return 0;
-  return std::min(change / (kLeastChangeOfSlope * larger),
-                  change * first * second / (first + second) / (kCornerOfNoise * noise));
+  const double by_distance = change * first * second / (first + second) / (kCornerOfNoise * noise);
+  return least_change > 0 ? std::min(change / (least_change * larger), by_distance) : by_distance;
 }
 
 /// Neighbours of one speed are one stretch: the least plain corner goes first.
-void merge_alike(std::span<const double> t, std::span<const double> x, double noise, std::vector<Stretch>& stretches) {
+void merge_alike(std::span<const double> t, std::span<const double> x, double noise, double least_change,
+                 std::vector<Stretch>& stretches) {
   while (stretches.size() > 1) {
     std::size_t faintest = 0;
     double least = 1;
     for (std::size_t i = 1; i < stretches.size(); ++i) {
-      const double plain = plainness(t, stretches[i - 1], stretches[i], noise);
+      const double plain = plainness(t, stretches[i - 1], stretches[i], noise, least_change);
       if (plain < least) least = plain, faintest = i;
     }
     if (faintest == 0) return;
     stretches[faintest - 1] = stretch_of(t, x, stretches[faintest - 1].begin, stretches[faintest].end);
     stretches.erase(stretches.begin() + static_cast<std::ptrdiff_t>(faintest));
   }
+}
+
+/// On the way from one slope to another, as of a drive that runs up, every corner stays that noise has not made.
+std::vector<Stretch> with_ways(std::span<const double> t, std::span<const double> x, const std::vector<Stretch>& fine,
+                               const std::vector<Stretch>& coarse) {
+  std::vector<Stretch> out;
+  for (std::size_t i = 0; i < coarse.size(); ++i) {
+    const auto slope = [&](std::size_t k) { return coarse[k].line.slope(); };
+    const bool is_way = i > 0 && i + 1 < coarse.size() && (slope(i) - slope(i - 1)) * (slope(i + 1) - slope(i)) > 0;
+    std::size_t begin = coarse[i].begin;
+    for (const Stretch& part : fine) {
+      const bool inside = part.begin >= begin + kFewestOfPiece && part.begin + kFewestOfPiece <= coarse[i].end;
+      if (!is_way || !inside) continue;
+      out.push_back(stretch_of(t, x, begin, part.begin));
+      begin = part.begin;
+    }
+    out.push_back(stretch_of(t, x, begin, coarse[i].end));
+  }
+  return out;
 }
 
 /// Where two lines meet, if that is near the samples between which the corner lies.
@@ -244,8 +265,11 @@ std::vector<LinePiece> piecewise_lines(std::span<const double> t, std::span<cons
   std::vector<Stretch> stretches;
   for (std::size_t i = 0; i < corners.size(); ++i)
     stretches.push_back(stretch_of(t, x, corners[i], i + 1 < corners.size() ? corners[i + 1] : t.size()));
-  merge_alike(t, x, noise, stretches);
+  std::vector<Stretch> fine = stretches;
+  merge_alike(t, x, noise, 0, fine);
+  merge_alike(t, x, noise, kLeastChangeOfSlope, stretches);
   for (int again = 0; again < 3; ++again) move_corners(t, x, stride, stretches);
+  stretches = with_ways(t, x, fine, stretches);
   for (std::size_t i = 0; i < stretches.size(); ++i) {
     const double begin = i == 0 ? t.front() : corner_between(t, stretches[i - 1], stretches[i]);
     pieces.push_back({begin, stretches[i].line.slope(), false});

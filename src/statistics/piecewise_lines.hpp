@@ -14,9 +14,9 @@ struct LinePiece {
 
 /// The lines of which values over ascending times are made, each beginning where the one before it ends.
 ///
-/// They are split where two lines leave least, until slopes differ by less than kLeastChangeOfSlope or a corner is lost
-/// in the noise; a corner is then where the lines beside it meet, which is closer than a sample. Cost: linear in
-/// values, times pieces.
+/// They are split where two lines leave least, until slopes differ by less than kLeastChangeOfSlope (on the way from
+/// one slope to another by less than shows) or a corner is lost in the noise; a corner is then where the lines beside
+/// it meet, which is closer than a sample. Cost: linear in values, times pieces.
 std::vector<LinePiece> piecewise_lines(std::span<const double> time, std::span<const double> values);
 
 }  // namespace tribofit

@@ -48,6 +48,14 @@ double over_models(const OpenQuestion& question, const std::vector<double>& of_m
   return weights > 0 ? sum / weights : 0;
 }
 
+/// Expected chances as they come true: those of all models are moved alike, so that their mean is calibrated.
+std::vector<double> calibrated(const OpenQuestion& question, std::vector<double> of_models) {
+  const double expected = over_models(question, of_models), stated = calibrated_chance(expected);
+  for (double& p : of_models)
+    p = stated < expected ? p * stated / expected : 1 - (1 - p) * (1 - stated) / (1 - expected);
+  return of_models;
+}
+
 /// An effect of the motion that moves the plateau of stick.
 bool is_of_plateau(const std::string& key) {
   return std::any_of(effect_catalogue().begin(), effect_catalogue().end(),
@@ -103,6 +111,15 @@ std::vector<double> chances_of(const OpenQuestion& question, const Weighed& one,
   return chances;
 }
 
+/// Chances of an experiment as they are expected, and as they come true: what is read by hand is no draw.
+void set_chances(const OpenQuestion& question, std::vector<double> expected, Weighed& one) {
+  PlannedExperiment& planned = one.planned;
+  planned.expected = over_models(question, expected);
+  planned.of_models = planned.experiment.is_by_hand() ? expected : calibrated(question, expected);
+  planned.probability = over_models(question, planned.of_models);
+  one.expected_of = std::move(expected);
+}
+
 /// Simulates draws number `range.first` to `range.second` (not itself) of every likely model for some of the
 /// experiments, which say the expected chances.
 void expect(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const PlanOptions& options,
@@ -126,6 +143,7 @@ void expect(const DiagnosedTraces& diagnosed, const OpenQuestion& question, cons
       if (!weighed.draws.empty()) continue;
       weighed.planned.reason = "there was no time to weigh it";
       weighed.planned.of_models.assign(question.models.size(), std::numeric_limits<double>::quiet_NaN());
+      weighed.expected_of = weighed.planned.of_models;
       continue;
     }
     weighed.draws.assign(question.models.size(), {});
@@ -137,8 +155,8 @@ void expect(const DiagnosedTraces& diagnosed, const OpenQuestion& question, cons
     weighed.drawn_again = range.first > 0;
     PlannedExperiment& one = weighed.planned;
     if (!any) one.reason = "its motion could not be simulated";
-    one.of_models = chances_of(question, weighed);
-    one.expected = one.probability = over_models(question, one.of_models);
+    set_chances(question, chances_of(question, weighed), weighed);
+    if (!any) std::fill(one.of_models.begin(), one.of_models.end(), one.probability = 0);
   }
 }
 
@@ -149,17 +167,18 @@ void lengthen(const DiagnosedTraces& diagnosed, const OpenQuestion& question, do
   if (planned.experiment.is_by_hand() || !planned.reason.empty() || !runs.front().pauses.empty()) return;
   const double before = cycles_with(diagnosed, question, {}),
                all = cycles_with(diagnosed, question, planned.experiment);
-  PlannedExperiment best = planned;
+  Weighed best{.planned = planned, .expected_of = one.expected_of};
   for (const double factor : kLongerRuns) {
     PlannedExperiment longer = planned;
     for (RunConditions& run : longer.experiment.runs) run.duration *= factor;
     const double cycles = before + factor * (all - before);
     if (longer.experiment.duration() > longest || cycles > kMostSimulatedCycles) break;
-    longer.of_models = chances_of(question, one, {factor, cycles / all});
-    longer.expected = longer.probability = over_models(question, longer.of_models);
-    if (worth(longer) > worth(best)) best = std::move(longer);
+    Weighed as_long{.planned = std::move(longer)};
+    set_chances(question, chances_of(question, one, {factor, cycles / all}), as_long);
+    if (worth(as_long.planned) > worth(best.planned)) best = std::move(as_long);
   }
-  planned = std::move(best);
+  planned = std::move(best.planned);
+  one.expected_of = std::move(best.expected_of);
 }
 
 /// Draws again those that may be the best: the chances of one that leads by a single draw are too high. Those draws are
@@ -195,8 +214,9 @@ struct Verified {
 void lower_expected(const OpenQuestion& question, const Verified& verified, std::vector<Weighed>& all) {
   for (Weighed& one : all) {
     if (!is_only_expected(one)) continue;
-    for (std::size_t m = 0; m < one.expected_of.size(); ++m)
-      one.planned.of_models[m] = verified.part() * one.expected_of[m];
+    std::vector<double> lowered = one.expected_of;
+    for (double& p : lowered) p *= verified.part();
+    one.planned.of_models = calibrated(question, std::move(lowered));
     one.planned.probability = over_models(question, one.planned.of_models);
   }
 }
@@ -227,6 +247,7 @@ void diagnose_in_full(const DiagnosedTraces& diagnosed, const OpenQuestion& ques
     say(static_cast<double>(++done) / static_cast<double>(tasks.size()));
   });
   weighed.looked_at = true;
+  const std::vector<double> before = calibrated(question, weighed.expected_of);
   for (const std::size_t m : likely) {
     double named = 0, count = 0;
     for (const Task& task : tasks) {
@@ -238,7 +259,7 @@ void diagnose_in_full(const DiagnosedTraces& diagnosed, const OpenQuestion& ques
     one.simulated += static_cast<std::size_t>(count);
     one.named += static_cast<std::size_t>(named);
     verified.named += named, verified.expected += count * weighed.expected_of[m];
-    one.of_models[m] = (kWeightOfExpected * weighed.expected_of[m] + named) / (kWeightOfExpected + count);
+    one.of_models[m] = (kWeightOfExpected * before[m] + named) / (kWeightOfExpected + count);
   }
   one.probability = over_models(question, one.of_models);
 }
@@ -246,7 +267,6 @@ void diagnose_in_full(const DiagnosedTraces& diagnosed, const OpenQuestion& ques
 /// Diagnoses the best experiments in full, until the best of all is one of them.
 void diagnose_best(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const PlanOptions& options,
                    PlanProgress& progress, std::vector<Weighed>& all) {
-  for (Weighed& one : all) one.expected_of = one.planned.of_models;
   Verified verified;
   for (std::size_t round = 0; round < kMostExperimentsInFull && !is_late(options); ++round) {
     rank(all);

@@ -103,6 +103,11 @@ std::vector<SimulatedRun> runs_of(const OpenQuestion& question, const Experiment
   return out;
 }
 
+double calibrated_chance(double expected) {
+  const double sure = std::clamp(expected, 1 - kSurestChance, kSurestChance);
+  return 1 / (1 + std::exp(-(kSlopeOfChances * std::log(sure / (1 - sure)) + kShiftOfChances)));
+}
+
 double chance_beyond(double sigmas) {
   return normal_tail_below(sigmas - diagnosis::limits::kDeclaredSigmas);
 }

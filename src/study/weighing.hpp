@@ -41,6 +41,9 @@ double chance_of_all(const std::vector<double>& chances);
 double chance_to_name(const OpenQuestion& question, std::size_t truth, const std::vector<Evidence>& draws,
                       const Lengthening& lengthening = {});
 
+/// Share of the runs with that expected chance that do name the true effect alone.
+double calibrated_chance(double expected);
+
 /// Chance that a value so many of its standard uncertainties from nothing is beyond three of them when it is measured.
 double chance_beyond(double sigmas);
 

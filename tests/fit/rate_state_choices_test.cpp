@@ -134,6 +134,9 @@ TEST(RateState, ASecondStateIsFoundWhereItIs) {
   for (std::size_t k = 0; k < truth.size(); ++k)
     EXPECT_NEAR(fit.parameters[k].value, truth[k], 4 * fit.parameters[k].std_error) << fit.parameters[k].parameter.name;
   EXPECT_LT(fit.rate_dependence_upper95, 0);
+  const double ratio = machine.parameters.stiffness / critical_stiffness(machine.parameters, 2);
+  EXPECT_GT(ratio, fit.stiffness_ratio_lower95);
+  EXPECT_LT(ratio, fit.stiffness_ratio_upper95);
 }
 
 /// What wanders is much like the answer of a second state.

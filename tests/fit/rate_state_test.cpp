@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+
 #include <cmath>
 #include <random>
 
@@ -287,6 +289,33 @@ TEST(RateState, AWrongLawOfAHoldIsSaid) {
     const std::string said = ::testing::PrintToString(fit_rate_state(motion, options).fits.at(0).messages);
     EXPECT_EQ(said.find("not describe the response") == std::string::npos, evolution == StateEvolution::ageing) << said;
   }
+}
+
+/// The eigenvalues of sliding that is disturbed a little: d/dt of ln v and of ln theta_i, at unit speed.
+TEST(RateState, CriticalStiffnessOfTwoStatesIsWhereDisturbancesStartToGrow) {
+  const auto growth = [](const RateStateParameters<double>& p, double k) {
+    const double first = 1 / p.distance[0], second = 1 / p.distance[1];
+    Eigen::Matrix3d m;  // ln v, ln theta_1, ln theta_2: a d(ln v)/dt = -k ln v - sum b_i d(ln theta_i)/dt
+    m.row(1) << -first, -first, 0;
+    m.row(2) << -second, 0, -second;
+    m.row(0) = (Eigen::RowVector3d(-k, 0, 0) - p.b[0] * m.row(1) - p.b[1] * m.row(2)) / p.a;
+    return m.eigenvalues().real().maxCoeff();
+  };
+  for (const auto& b : {std::array{0.014, 0.006}, std::array{0.012, -0.006}, std::array{0.004, 0.009}}) {
+    RateStateParameters<double> p;
+    p.a = 0.008;
+    p.b = {b[0], b[1]};
+    p.distance = {2e-6, 50e-6};
+    const double k = critical_stiffness(p, 2);
+    ASSERT_GT(k, 0);
+    EXPECT_LT(growth(p, 1.001 * k), 0) << b[0];
+    EXPECT_GT(growth(p, 0.999 * k), 0) << b[0];
+  }
+  RateStateParameters<double> same;
+  same.a = 0.01;
+  same.b = {0.005, 0.009};
+  same.distance = {10e-6, 10e-6};
+  EXPECT_NEAR(critical_stiffness(same, 2), critical_stiffness(0.01, 0.014, 10e-6), 1e-9);
 }
 
 }  // namespace tribofit

@@ -30,6 +30,7 @@ struct Cell {
   bool holds = false;
   double late = 0;         ///< by up to which friction answers a step after the load point is recorded to turn [s]
   std::size_t states = 1;  ///< the second as b_2 of 0.4 to 0.8 b, over 10 D_c
+  double ramp = 0;         ///< time in which the drive passes from one speed to the next [s]
 };
 
 /// 2 um/s and `step` times as fast in turn, each over at least 12 D_c; or four holds of 3 to 100 s. Of two states one
@@ -50,6 +51,39 @@ std::vector<LoadPointPhase> phases_of(const Cell& cell) {
     out.push_back({out.back().begin + (out.back().speed > 3 * kMicro ? 40 : 60), (fast ? cell.step : 1) * 2 * kMicro});
   }
   return out;
+}
+
+/// The same with ramps, as stairs of a sample each.
+std::vector<LoadPointPhase> with_ramps(const std::vector<LoadPointPhase>& phases, double ramp, double interval) {
+  std::vector<LoadPointPhase> out = {phases.front()};
+  for (std::size_t i = 1; i < phases.size(); ++i) {
+    const double from = phases[i - 1].speed, to = phases[i].speed;
+    for (double t = 0.5 * interval; t < ramp; t += interval)
+      out.push_back({phases[i].begin + t - 0.5 * interval, from + (to - from) * t / ramp});
+    out.push_back({phases[i].begin + ramp, to});
+  }
+  return out;
+}
+
+/// What is read of the load point where its displacement was recorded to 0.01 um.
+std::vector<LoadPointPhase> recorded(const std::vector<LoadPointPhase>& phases, const std::vector<double>& times,
+                                     const std::vector<double>& friction) {
+  constexpr double kDigit = 0.01 * kMicro;
+  Trace trace;
+  trace.kind = RecordKind::velocity_steps;
+  trace.time = times;
+  trace.friction = friction;
+  double at = 0;
+  std::size_t phase = 0;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (i > 0) at += phases[phase].speed * (times[i] - times[i - 1]);
+    while (phase + 1 < phases.size() && phases[phase + 1].begin <= times[i]) {
+      at += (phases[phase + 1].speed - phases[phase].speed) * (times[i] - phases[phase + 1].begin);
+      ++phase;
+    }
+    trace.drive_position.push_back(std::round(at / kDigit) * kDigit);
+  }
+  return compute_motion(std::move(trace)).load_point;
 }
 
 RateStateMachine draw_machine(const Cell& cell, std::mt19937_64& generator) {
@@ -79,7 +113,9 @@ Motion draw_motion(const Cell& cell, const RateStateMachine& machine, std::mt199
   std::uniform_real_distribution<double> uniform;
   std::vector<LoadPointPhase> turns = motion.load_point;
   for (std::size_t i = 1; i < turns.size(); ++i) turns[i].begin += cell.late * uniform(generator);
+  if (cell.ramp > 0) turns = with_ramps(turns, cell.ramp, 1 / kRate);
   motion.friction = apart::Contact(machine).friction(turns, motion.time);
+  if (cell.ramp > 0) motion.load_point = recorded(turns, motion.time, motion.friction);
   motion.relative_velocity.assign(motion.time.size(), 0.0);
   std::normal_distribution<double> normal;
   const double decay = std::exp(-1 / kRate / kForgets), drift = 2e-5 * normal(generator);
@@ -170,8 +206,8 @@ states were chosen as they have. Moved: records whose steps were taken for later
   unsigned number = 0;
   for (const StateEvolution evolution : state_evolutions) {
     const auto cell = [&](const char* name, double stiffness, double step, double white, double slow,
-                          bool holds = false, double late = 0, std::size_t states = 1) {
-      return Cell{name, evolution, stiffness, step, white, slow, holds, late, states};
+                          bool holds = false, double late = 0, std::size_t states = 1, double ramp = 0) {
+      return Cell{name, evolution, stiffness, step, white, slow, holds, late, states, ramp};
     };
     // Under the slip law large steps run away above the critical stiffness, too (J.-C. Gu et al., J. Mech. Phys. Solids
     // 32 (1984) 167): with these a and b from 2.2 times the speed on at 1.1 k_c (less while the last one still swings),
@@ -190,6 +226,8 @@ states were chosen as they have. Moved: records whose steps were taken for later
                           cell("2 and 10 um/s, up to 0.3 s late, white", 30, 5, 2e-4, 0, false, 0.3),
                           cell("2 and 10 um/s, up to 0.3 s late, coloured", 30, 5, 1e-4, 2e-4, false, 0.3),
                           cell("holds of 3 to 100 s, up to 0.2 s late, coloured", 5, 1, 1e-4, 2e-4, true, 0.2),
+                          cell("2 and 10 um/s, ramps of 1 s, coloured", 5, 5, 1e-4, 2e-4, false, 0, 1, 1),
+                          cell("2 and 10 um/s, ramps of 5 s, coloured", 5, 5, 1e-4, 2e-4, false, 0, 1, 5),
                           cell("two states, white", 10, 5, 2e-4, 0, false, 0, 2),
                           cell("two states, coloured", 10, 5, 1e-4, 2e-4, false, 0, 2)}) {
       ++number;

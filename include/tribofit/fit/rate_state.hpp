@@ -64,8 +64,8 @@ struct RateStateFit {
   std::vector<double> covariance;        ///< of ln D and ln k, and the others as they are, row by row
   Estimate rate_dependence;              ///< a - b (of all states) [1]; NaN where a bound holds one of them
   double rate_dependence_lower95 = 0, rate_dependence_upper95 = 0;
-  /// (b - a)/D_c of one state [1/m], below which steady sliding is unstable, and k over it; NaN where friction does not
-  /// fall with speed, or with two states.
+  /// [1/m], (b - a)/D_c of one state, below which steady sliding is unstable, and k over it; NaN where it is stable on
+  /// any machine, or may be.
   double critical_stiffness = std::numeric_limits<double>::quiet_NaN();
   double stiffness_ratio = std::numeric_limits<double>::quiet_NaN(), stiffness_ratio_lower95 = 0,
          stiffness_ratio_upper95 = 0;

@@ -109,7 +109,7 @@ struct PredictedCurves {
 struct PlannedExperiment {
   Experiment experiment;
   double probability = 0;                    ///< that it names the true effect, and it alone
-  double expected = 0;                       ///< the same from the expected difference of the models alone
+  double expected = 0;                       ///< the same from the expected difference of the models, not calibrated
   std::vector<double> of_models = {};        ///< probability if that model is the true one; NaN: not simulated
   std::size_t simulated = 0;                 ///< records of it that were diagnosed in full
   std::size_t named = 0;                     ///< of these, with the true effect alone
@@ -163,9 +163,10 @@ inline constexpr double kHopeless = 0.2;
 /// doi:10.2307/1266591; G. E. P. Box, W. J. Hill, Technometrics 9 (1967) 57, doi:10.2307/1266318) gives the chance that
 /// the rule distinguishes them, by a normal approximation: with the right one known, what a run adds to that difference
 /// has a variance of four times its mean, which grows with the run; each is made as long as is worth it. For the best
-/// few the mean is that of several draws, and records are diagnosed in full: what is named counts beside that chance as
-/// a beta prior, and the chances of the others are lowered by as much as full diagnoses named less than was expected,
-/// until the best of all has been diagnosed in full. Experiments are ranked by probability less a cost for each minute.
+/// few the mean is that of several draws. Such a chance is calibrated by what came of the runs of simulated
+/// investigations (J. Platt, Advances in Large Margin Classifiers, 1999, p. 61). Records of the best are diagnosed in
+/// full: what is named counts beside the calibrated chance as a beta prior, and the chances of the others are lowered
+/// by as much as full diagnoses named less than was expected, until the best of all has been diagnosed in full. Experiments are ranked by probability less a cost for each minute.
 ///
 /// Only stick-slip on a rig that can be identified is simulated; `reason` says why where it cannot be.
 /// Cost: some 30 judgements of a few models each and a dozen diagnoses, 10 to 20 s of two processors for a record of
