@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -85,11 +86,31 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
   return out;
 }
 
+/// What was asked for of a fit of sliding laws, and means nothing for velocity steps and holds.
+std::vector<std::string> without_meaning_for_steps(const IdentifyOptions& options) {
+  std::vector<std::string> out;
+  if (options.selection.cycles) out.emplace_back("cycles");
+  if (options.fit.loss != Loss::squares) out.emplace_back("loss");
+  if (options.fit.profile) out.emplace_back("profile");
+  const IdentifyOptions usual;
+  const bool laws = options.laws.size() != usual.laws.size() ||
+                    !std::equal(options.laws.begin(), options.laws.end(), usual.laws.begin(),
+                                [](const Law& a, const Law& b) { return to_string(a) == to_string(b); });
+  if (laws) out.emplace_back("law");
+  return out;
+}
+
 /// Rate-and-state friction of a contact whose load point is driven in steps.
 void fit_driven(const IdentifyOptions& options, Identification& trace) {
   if (!options.effects.empty())
     trace.refuse("effects are of laws of sliding speed: velocity steps and holds are fitted by rate and state alone");
   if (!trace.analysed) return;
+  const std::vector<std::string> unused = without_meaning_for_steps(options);
+  if (!unused.empty())
+    trace.warnings.push_back(fmt::format(
+        "{} asked for, but velocity steps and holds are fitted by rate and state, over all steps and by least squares: "
+        "not used",
+        fmt::join(unused, ", ")));
   RateStateOptions own = options.rate_state;
   own.threads = options.threads;
   own.excluded = options.selection.excluded;

@@ -147,6 +147,9 @@ TEST(VelocitySteps, WhatCannotBeDoneIsSaid) {
     EXPECT_THAT(outcome.err, HasSubstr("has no unit")) << bare;
   }
   EXPECT_EQ(shop.identify("--kind sliding --speed 0s:2um/s,9s:3um/s steps.csv").status, 2);
+  EXPECT_THAT(shop.identify("--loss huber --law coulomb --cycles 0..3 steps.csv").err +
+                  shop.identify("--loss huber --law coulomb --cycles 0..3 steps.csv").out,
+              HasSubstr("cycles, loss, law asked for"));
   const Outcome early = shop.identify("--to 50s steps.csv");
   EXPECT_EQ(early.status, 1);
   EXPECT_THAT(early.err, HasSubstr("no step"));
