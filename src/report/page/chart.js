@@ -28,7 +28,7 @@ const unitOf = (axis) => (axis.unit && axis.unit !== "1" ? ` ${axis.unit}` : "")
 function axisOf(axis, more = {}) {
   const layout = { title: { text: marked(brokenTitle(titleOf(axis))), standoff: 8 }, automargin: true, zeroline: false, showline: true,
     linecolor: styles.axis, gridcolor: styles.grid, ticks: "outside", tickcolor: styles.axis, exponentformat: "power",
-    hoverformat: ".7~g", ...more };
+    hoverformat: ".7~g", ticklabeloverflow: "allow", ...more }; // the margins have room for every label
   if (axis.names) {
     // More names than can be read take minutes to lay out; each still shows beside its point.
     const every = Math.ceil(axis.names.length / 40), shown = axis.names.map((_, k) => k).filter((k) => k % every === 0);
@@ -55,10 +55,18 @@ function hoverOf(chart, panel, bars) {
     "<extra>%{fullData.name}</extra>" };
 }
 
-/** A band under its line, switched together with it. */
-function bandOf(line, edge) {
-  return [{ ...edge, name: `${plain(line.name)}, lower edge`, y: line.low },
-    { ...edge, name: `${plain(line.name)}, upper edge`, y: line.high, fill: "tonexty", fillcolor: styles.pale[line.colour] }];
+/** A band under its line, switched together with it: one filled shape, which goes along the upper edge and back along the
+ * lower one between gaps. */
+function bandOf(line, shape) {
+  const x = [], y = [];
+  for (let begin = 0, end = 0; end <= line.x.length; ++end) {
+    if (end < line.x.length && line.low[end] !== null && line.high[end] !== null) continue;
+    const stretch = line.x.slice(begin, end);
+    x.push(...stretch, ...stretch.reverse(), null);
+    y.push(...line.high.slice(begin, end), ...line.low.slice(begin, end).reverse(), null);
+    begin = end + 1;
+  }
+  return { ...shape, name: `${plain(line.name)}, band`, x, y, fill: "toself", fillcolor: styles.pale[line.colour] };
 }
 
 function tracesOfLine(chart, line) {
@@ -66,7 +74,7 @@ function tracesOfLine(chart, line) {
     visible: line.shown === false ? "legendonly" : true };
   const traces = [];
   if (line.low && !line.bars) {
-    traces.push(...bandOf(line, { ...common, mode: "lines", showlegend: false, hoverinfo: "skip",
+    traces.push(bandOf(line, { ...common, mode: "lines", showlegend: false, hoverinfo: "skip",
       line: { width: 0, color: styles.colours[line.colour] } }));
   }
   if (!line.y) {

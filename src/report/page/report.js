@@ -16,28 +16,58 @@ const itemMakers = {
     if (!item.folded) return whole;
     return make("details", {}, make("summary", {}, item.caption), whole);
   },
-  chart: chartFigure,
   animation: animationFigure,
 };
 
-/** Fills a section; charts that it has already are changed, not made anew. */
+/** Puts children into an element. Those that stand there already stay attached: whatever is taken out and put back, a
+ * chart above all, is styled, laid out and painted anew. */
+function arrange(element, children) {
+  const wanted = new Set(children);
+  for (const child of [...element.childNodes]) if (!wanted.has(child)) child.remove();
+  let next = element.firstChild;
+  for (const child of children) {
+    if (child === next) next = next.nextSibling;
+    else element.insertBefore(child, next);
+  }
+}
+
+const madeItems = new WeakMap(); // by section: what was made of each description
+
+/** Makes the items of a section, or takes those that it has where they are described alike. */
+function makeItems(element, items) {
+  const before = madeItems.get(element) || new Map(), now = new Map();
+  const made = items.map((item, k) => {
+    if (item.type === "chart") return chartFigure(item); // which knows its own
+    const described = `${k} ${styles.dark} ${JSON.stringify(item)}`;
+    now.set(described, before.get(described) || itemMakers[item.type](item));
+    return now.get(described);
+  });
+  madeItems.set(element, now);
+  return made;
+}
+
+/** Fills a section; what it has already stays, and charts are changed, not made anew. */
 function fillSection(element, section) {
-  const parts = [make("h2", {}, section.title)];
+  const title = element.querySelector(":scope > h2") || make("h2");
+  if (title.textContent !== section.title) title.textContent = section.title;
+  const parts = [title], pairs = new Map();
   let pair = null;
-  for (const item of section.items) {
-    const made = itemMakers[item.type](item);
-    if (!item.half) {
+  makeItems(element, section.items).forEach((made, k) => {
+    if (!section.items[k].half) {
       pair = null;
       parts.push(made);
-      continue;
+      return;
     }
     if (!pair) {
-      pair = make("div", { className: "pair" });
+      const stood = made.parentElement; // the pair that it was the first of
+      pair = stood && stood.className === "pair" && stood.firstChild === made ? stood : make("div", { className: "pair" });
+      pairs.set(pair, []);
       parts.push(pair);
     }
-    pair.append(made);
-  }
-  element.replaceChildren(...parts);
+    pairs.get(pair).push(made);
+  });
+  for (const [box, halves] of pairs) arrange(box, halves);
+  arrange(element, parts);
 }
 
 function headerItems(report) {
@@ -63,5 +93,5 @@ function showReport(main, report) {
     fillSection(element, section);
     return element;
   });
-  main.replaceChildren(...headerItems(report), ...sections);
+  arrange(main, [...headerItems(report), ...sections]);
 }

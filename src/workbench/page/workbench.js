@@ -240,11 +240,12 @@ async function drawByHand(values) {
 }
 
 let changing = 0;
-/** After a change of the choice; a drag changes it many times a second. */
+/** After a change of the choice. A drag changes it many times a second and waits for the hand to slow down. */
 function changed(passing = false) {
   clearTimeout(changing);
   clearTimeout(workbench.settling);
-  changing = setTimeout(() => show(false, passing), 25);
+  if (passing) changing = setTimeout(() => show(false, true), 25);
+  else show();
 }
 
 function goTo(choice, full = false) {
