@@ -30,3 +30,15 @@ export async function launch(driver, chromium, folder) {
   }
   return { open, close: () => browser.close() };
 }
+
+/** Scrolls past every chart, which draws those that wait for it, and back to the top. */
+export async function lookAtAll(page) {
+  await page.evaluate(async () => {
+    for (let y = 0; y < document.documentElement.scrollHeight; y += innerHeight / 2) {
+      scrollTo(0, y);
+      await new Promise((go) => requestAnimationFrame(() => setTimeout(go, 20)));
+    }
+    scrollTo(0, 0);
+  });
+  await page.waitForFunction(() => document.documentElement.dataset.drawn === "all");
+}

@@ -110,12 +110,23 @@ async function checkLegend(page) {
   const button = page.locator("figure:has(#t1-law) .legend button").filter({ hasText: "slowing down" });
   const visible = () => page.evaluate(() => document.getElementById("t1-law").data
     .filter((trace) => trace.legendgroup === "measured, slowing down").map((trace) => trace.visible ?? true));
-  assert.deepEqual(await visible(), [true, true, true]); // the line and both edges of its band
+  assert.deepEqual(await visible(), [true, true]); // the band and its line
   await button.click();
   assert.equal(await button.getAttribute("aria-pressed"), "false");
-  assert.deepEqual(await visible(), ["legendonly", "legendonly", "legendonly"]);
+  assert.deepEqual(await visible(), ["legendonly", "legendonly"]);
   await button.press("Enter");
-  assert.deepEqual(await visible(), [true, true, true]);
+  assert.deepEqual(await visible(), [true, true]);
+}
+
+/** A band goes along its upper edge and back along the lower one, and leaves out where it has a gap. */
+async function checkBand(page) {
+  const bands = await page.evaluate(() => {
+    const line = { name: "a", colour: "blue", x: [0, 1, 2, 3, 4], low: [1, 2, null, 4, 5], high: [2, 3, null, 5, 6] };
+    const unknown = { ...line, low: line.x.map(() => null) };
+    return [line, unknown].map((one) => bandOf(one, {})).map(({ x, y }) => x.map((at, k) => [at, y[k]]));
+  });
+  const gap = [null, null];
+  assert.deepEqual(bands, [[[0, 2], [1, 3], [1, 2], [0, 1], gap, [3, 5], [4, 6], [4, 5], [3, 4], gap], []]);
 }
 
 async function checkSaving(page) {
@@ -178,6 +189,7 @@ try {
     if (width === 1280) {
       await checkHoverAndZoom(page);
       await checkLegend(page);
+      await checkBand(page);
       await checkSaving(page);
       await checkPeaks(page);
       await checkPrint(page);

@@ -5,6 +5,7 @@ import { execFileSync, spawn } from "node:child_process";
 import { mkdirSync, readFileSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
+import { lookAtAll } from "./browser.mjs";
 
 const [driver, chromium, identify, folder] = process.argv.slice(2);
 const playwright = await import(pathToFileURL(driver));
@@ -142,6 +143,7 @@ async function watchTheErrorFall(address, width) {
   assert.deepEqual(unexpected, [], `complaints at ${width} px`);
   const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   assert.ok(overflow <= 0, `the page is ${overflow} px wider than ${width} px`);
+  await lookAtAll(page);
   await page.screenshot({ path: join(folder, `all-${width}.png`), fullPage: true });
   await close();
 }
@@ -167,6 +169,37 @@ async function firstScreen(address) {
   assert.match(await page.textContent("#workbench-command"), /--exclude 3\.9\d*s\.\.[45]\.\d*s|--exclude 4\.?\d*s\.\.[45]\.?\d*s/);
   await change(page, () => page.click("#workbench-undo"));
   assert.doesNotMatch(await page.textContent("#workbench-command"), /--exclude/);
+  assert.deepEqual(complaints, []);
+  await close();
+}
+
+/** Charts that nobody came near wait; every other one shows the model in view, wherever it stands, and is never made anew. */
+async function chartsUpToDate(address) {
+  const { page, complaints, close } = await open(address, 1280);
+  const charts = () => page.evaluate(() => [...chartItems.values()].map(({ chart, drawn, plot }) => {
+    const values = (trace) => JSON.stringify([trace.x, trace.y, trace.z]);
+    const shown = drawn ? new Set(plot.data.map(values)) : null;
+    const described = [...(chart.lines || []).filter((line) => line.y), ...(chart.map ? [chart.map] : [])];
+    return { id: chart.id, drawn, right: drawn && described.every((line) => shown.has(values(line))) };
+  }));
+  const drawnOf = (list) => list.filter((chart) => chart.drawn).map((chart) => chart.id);
+  const wrongOf = (list) => list.filter((chart) => chart.drawn && !chart.right).map((chart) => chart.id);
+  const opened = await charts();
+  assert.ok(drawnOf(opened).includes("t1-law") && !drawnOf(opened).includes("t1-spectrum"), drawnOf(opened).join());
+  await page.evaluate(() => { window.lawFigure = document.querySelector("figure:has(#t1-law)"); });
+  await change(page, () => page.check("#effect-viscous"));
+  const changed = await charts();
+  assert.deepEqual([drawnOf(changed), wrongOf(changed)], [drawnOf(opened), []]);
+  await lookAtAll(page);
+  await settled(page);
+  const seen = await charts();
+  assert.deepEqual([drawnOf(seen), wrongOf(seen)], [seen.map((chart) => chart.id), []]);
+  const error = await page.evaluate(() => JSON.stringify(document.getElementById("t1-error-time").data[0].y));
+  await change(page, () => page.check("#effect-frictional-lag"));
+  const after = await charts();
+  assert.deepEqual([drawnOf(after), wrongOf(after)], [after.map((chart) => chart.id), []]);
+  assert.notEqual(await page.evaluate(() => JSON.stringify(document.getElementById("t1-error-time").data[0].y)), error);
+  assert.ok(await page.evaluate(() => window.lawFigure === document.querySelector("figure:has(#t1-law)")));
   assert.deepEqual(complaints, []);
   await close();
 }
@@ -290,6 +323,7 @@ async function changeRadius(address) {
 const begun = await explore("--radius", "15mm", "lag.csv");
 for (const width of [1280, 390]) await watchTheErrorFall(begun.address, width);
 await firstScreen(begun.address);
+await chartsUpToDate(begun.address);
 await twoAtOnce(begun.address);
 await diagnose(begun.address);
 const { page: stranger, close } = await open(begun.address, 1280);

@@ -61,9 +61,11 @@ function bandOf(line, shape) {
   const x = [], y = [];
   for (let begin = 0, end = 0; end <= line.x.length; ++end) {
     if (end < line.x.length && line.low[end] !== null && line.high[end] !== null) continue;
-    const stretch = line.x.slice(begin, end);
-    x.push(...stretch, ...stretch.reverse(), null);
-    y.push(...line.high.slice(begin, end), ...line.low.slice(begin, end).reverse(), null);
+    if (end > begin) {
+      const stretch = line.x.slice(begin, end);
+      x.push(...stretch, ...stretch.reverse(), null);
+      y.push(...line.high.slice(begin, end), ...line.low.slice(begin, end).reverse(), null);
+    }
     begin = end + 1;
   }
   return { ...shape, name: `${plain(line.name)}, band`, x, y, fill: "toself", fillcolor: styles.pale[line.colour] };
@@ -248,8 +250,6 @@ function swatch(trace) {
 }
 
 const chartItems = new Map(); // by id
-let waiting = []; // charts not drawn yet, or not as they are now
-let isDrawing = false;
 
 /** The figure of a chart; one of the same id is changed, and keeps its zoom and what its legend switched. */
 function chartFigure(chart) {
@@ -268,12 +268,7 @@ function chartFigure(chart) {
   item.note.textContent = prose(chart.note);
   item.plot.style.height = `${chart.height}px`;
   fillLegend(item);
-  if (!waiting.includes(item)) waiting.push(item);
-  if (!isDrawing) {
-    isDrawing = true;
-    delete document.documentElement.dataset.drawn;
-    requestAnimationFrame(() => setTimeout(drawWaiting, 0));
-  }
+  drawSoon(item);
   return item.figure;
 }
 
@@ -288,40 +283,8 @@ function makeChart(chart) {
   addTools(item, chart.title);
   plot.addEventListener("keydown", (event) => onKey(event, item));
   chartItems.set(chart.id, item);
+  comingNear.observe(plot);
   return item;
-}
-
-function draw(item) {
-  waiting = waiting.filter((other) => other !== item);
-  fitBelow(item.layout, item.chart, item.layout.width || item.plot.clientWidth);
-  Plotly.react(item.plot, item.traces, item.layout, { responsive: true, displaylogo: false, displayModeBar: false,
-    doubleClick: "reset", scrollZoom: false });
-  item.drawn = true;
-  item.shown = item.described;
-}
-
-function isInView(item) {
-  const box = item.plot.getBoundingClientRect();
-  return box.bottom > 0 && box.top < innerHeight;
-}
-
-const drawingTime = 50; // ms: a page that answers later than that feels slow
-
-/** Draws what waits, what is in view first. A few charts at a time, so that the page stays alive: one by one it would be
- * laid out and painted as often. */
-function drawWaiting() {
-  waiting = waiting.filter((item) => item.plot.isConnected);
-  const inView = waiting.filter(isInView), began = performance.now();
-  for (const item of [...inView, ...waiting.filter((other) => !inView.includes(other))]) {
-    draw(item);
-    if (performance.now() - began > drawingTime) break;
-  }
-  if (waiting.length > 0) {
-    setTimeout(drawWaiting, 0);
-  } else {
-    isDrawing = false;
-    document.documentElement.dataset.drawn = "all";
-  }
 }
 
 /** One button for each name: a line and its band go together. */

@@ -228,7 +228,8 @@ async function drawByHand(values) {
   }
   if (dragging !== asking) return;
   const item = [...chartItems.values()].find((one) => one.chart.id.endsWith("-law") && one.plot.isConnected);
-  if (!item || !item.drawn) return;
+  if (!item) return;
+  if (!item.drawn) draw(item);
   const name = "by hand", at = item.plot.data.findIndex((trace) => trace.name === name);
   if (at >= 0) {
     await Plotly.restyle(item.plot, { x: [curve.x], y: [curve.y] }, [at]);
@@ -368,6 +369,7 @@ const folded = (title, ...parts) => make("details", {}, make("summary", {}, titl
 
 async function startWorkbench(main) {
   document.body.classList.add("workbench");
+  drawsFarCharts = false;
   const controls = make("aside", { id: "workbench-controls", "aria-label": "Model" });
   main.replaceChildren(strip(), controls, make("div", { id: "workbench-shown" },
     make("p", { id: "workbench-trouble", className: "warning", role: "alert", hidden: "" }), diagnosisBox(),
