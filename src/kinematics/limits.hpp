@@ -390,6 +390,9 @@ inline constexpr std::size_t kFewestPeriods = 5;
 /// Speed backwards over the fastest, below which it creeps during a hold rather than turns; part of a record in one
 /// direction, from which on that is the test and the rest the way to it and back.
 inline constexpr double kCreepOfHold = 1e-3, kLeastOneWay = 0.6;
+/// Errors of the mean of a recorded speed, by which phases differ that are not of its noise alone: its integral is cut
+/// where it wanders most, so that three are not enough.
+inline constexpr double kSpeedsOfNoise = 8;
 /// Logarithm of the ratio of speeds that are the same: a rest between them is a hold.
 inline constexpr double kSameSpeed = 0.3;
 /// Time and length, over those of the sliding before and behind, of what a drive does on its way from one speed to the

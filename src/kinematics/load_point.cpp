@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "limits.hpp"
 #include "motion_channels.hpp"
 #include "statistics/piecewise_lines.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::kinematics {
 
@@ -28,6 +30,48 @@ std::vector<LoadPointPhase> phases_of(const std::vector<double>& time, const std
   std::vector<LoadPointPhase> out;
   for (const LinePiece& piece : piecewise_lines(time, displacement))
     out.push_back({piece.begin, piece.is_level ? 0 : piece.slope});
+  return out;
+}
+
+/// A phase with its samples of a recorded speed.
+struct Recorded {
+  LoadPointPhase phase;
+  double sum = 0, count = 0;
+  double mean() const { return count > 0 ? sum / count : phase.speed; }
+};
+
+/// The integral of a noisy speed wanders, and has corners where nobody set any: neighbours whose mean speeds differ by
+/// no more than the noise does are one phase, the least different first.
+std::vector<LoadPointPhase> without_corners_of_noise(const std::vector<double>& time, const std::vector<double>& speed,
+                                                     const std::vector<LoadPointPhase>& phases) {
+  std::vector<double> changes;
+  for (std::size_t i = 1; i < speed.size(); ++i) changes.push_back(std::abs(speed[i] - speed[i - 1]));
+  const double noise = changes.empty() ? 0 : kSigmaPerMad * median(std::move(changes)) / std::numbers::sqrt2;
+  if (!(noise > 0)) return phases;
+  std::vector<Recorded> all;
+  for (const LoadPointPhase& phase : phases) all.push_back({phase});
+  for (std::size_t i = 0, k = 0; i < speed.size() && !all.empty(); ++i) {
+    while (k + 1 < all.size() && all[k + 1].phase.begin <= time[i]) ++k;
+    all[k].sum += speed[i];
+    all[k].count += 1;
+  }
+  while (all.size() > 1) {
+    std::size_t faintest = 0;
+    double least = kSpeedsOfNoise;
+    for (std::size_t k = 1; k < all.size(); ++k) {
+      const double error = noise * std::sqrt(1 / std::max(1.0, all[k - 1].count) + 1 / std::max(1.0, all[k].count));
+      const double apart = std::abs(all[k].mean() - all[k - 1].mean()) / error;
+      if (apart < least) least = apart, faintest = k;
+    }
+    if (faintest == 0) break;
+    Recorded& kept = all[faintest - 1];
+    kept.sum += all[faintest].sum;
+    kept.count += all[faintest].count;
+    kept.phase.speed = kept.mean();
+    all.erase(all.begin() + static_cast<std::ptrdiff_t>(faintest));
+  }
+  std::vector<LoadPointPhase> out;
+  for (const Recorded& r : all) out.push_back(r.phase);
   return out;
 }
 
@@ -122,6 +166,8 @@ Motion motion_of_load_point(Trace trace) {
     displacement = std::move(trace.drive_position);
   }
   if (motion.load_point.empty()) motion.load_point = phases_of(trace.time, displacement);
+  if (motion.load_point_source == LoadPointSource::speed)
+    motion.load_point = without_corners_of_noise(trace.time, trace.load_point_speed, motion.load_point);
   if (trace.size() > 1) {
     OneWay used = one_way(trace, std::move(motion.load_point), motion.notes);
     motion.load_point = std::move(used.phases);

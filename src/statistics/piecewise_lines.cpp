@@ -130,7 +130,8 @@ std::vector<std::size_t> corners_of(std::span<const double> t, std::span<const d
 
 struct Stretch {
   std::size_t begin = 0, end = 0;
-  GrowingLine line;  ///< through its inner samples
+  GrowingLine line;     ///< through its inner samples
+  bool is_way = false;  ///< from one slope to another
 };
 
 Stretch stretch_of(std::span<const double> t, std::span<const double> x, std::size_t begin, std::size_t end) {
@@ -185,21 +186,46 @@ void merge_alike(std::span<const double> t, std::span<const double> x, double no
   }
 }
 
-/// On the way from one slope to another, as of a drive that runs up, every corner stays that noise has not made.
+/// A stretch by the corners within it that noise has not made.
+std::vector<Stretch> parts_of(std::span<const double> t, std::span<const double> x, const Stretch& whole,
+                              const std::vector<Stretch>& fine) {
+  std::vector<Stretch> out;
+  std::size_t begin = whole.begin;
+  for (const Stretch& part : fine) {
+    if (part.begin < begin + kFewestOfPiece || part.begin + kFewestOfPiece > whole.end) continue;
+    out.push_back(stretch_of(t, x, begin, part.begin));
+    begin = part.begin;
+  }
+  out.push_back(stretch_of(t, x, begin, whole.end));
+  return out;
+}
+
+/// On the way from one slope to another, as of a drive that runs up, every corner stays that noise has not made; so do
+/// those by which a stretch goes over into such a way.
 std::vector<Stretch> with_ways(std::span<const double> t, std::span<const double> x, const std::vector<Stretch>& fine,
                                const std::vector<Stretch>& coarse) {
+  const auto is_between = [&](std::size_t from, double slope, std::size_t to) {
+    return (slope - coarse[from].line.slope()) * (coarse[to].line.slope() - slope) > 0;
+  };
+  const auto is_way = [&](std::size_t i) {
+    return i > 0 && i + 1 < coarse.size() && is_between(i - 1, coarse[i].line.slope(), i + 1);
+  };
   std::vector<Stretch> out;
   for (std::size_t i = 0; i < coarse.size(); ++i) {
-    const auto slope = [&](std::size_t k) { return coarse[k].line.slope(); };
-    const bool is_way = i > 0 && i + 1 < coarse.size() && (slope(i) - slope(i - 1)) * (slope(i + 1) - slope(i)) > 0;
-    std::size_t begin = coarse[i].begin;
-    for (const Stretch& part : fine) {
-      const bool inside = part.begin >= begin + kFewestOfPiece && part.begin + kFewestOfPiece <= coarse[i].end;
-      if (!is_way || !inside) continue;
-      out.push_back(stretch_of(t, x, begin, part.begin));
-      begin = part.begin;
+    const std::vector<Stretch> parts = parts_of(t, x, coarse[i], fine);
+    std::size_t first = 0, last = parts.size() - 1;  // of those that are of one slope
+    if (i > 0 && is_way(i - 1)) {
+      while (first < last && is_between(i - 1, parts[first].line.slope(), i)) ++first;
     }
-    out.push_back(stretch_of(t, x, begin, coarse[i].end));
+    if (is_way(i + 1)) {
+      while (last > first && is_between(i + 1, parts[last].line.slope(), i)) --last;
+    }
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      const bool inner = !is_way(i) && k >= first && k <= last;
+      if (inner && k > first) continue;
+      out.push_back(inner ? stretch_of(t, x, parts[first].begin, parts[last].end) : parts[k]);
+      out.back().is_way = !inner;
+    }
   }
   return out;
 }
@@ -211,6 +237,18 @@ double corner_between(std::span<const double> t, const Stretch& one, const Stret
   const double meet = middle - (one.line.at(middle) - two.line.at(middle)) / apart;
   const double near = kNearCorner * (late - early);
   return std::isfinite(meet) && meet > early - near && meet < late + near ? meet : middle;
+}
+
+/// On the way from one slope to another lines are short, and meet far from where they were split: what is between two
+/// corners rises as much as they are apart.
+void join_ways(const std::vector<Stretch>& stretches, std::vector<LinePiece>& pieces) {
+  const auto at_corner = [&](std::size_t i) {
+    return 0.5 * (stretches[i - 1].line.at(pieces[i].begin) + stretches[i].line.at(pieces[i].begin));
+  };
+  for (std::size_t i = 1; i + 1 < pieces.size(); ++i) {
+    const double lasts = pieces[i + 1].begin - pieces[i].begin;
+    if (stretches[i].is_way && lasts > 0) pieces[i].slope = (at_corner(i + 1) - at_corner(i)) / lasts;
+  }
 }
 
 std::vector<double> picked(std::span<const double> values, std::size_t stride) {
@@ -274,6 +312,7 @@ std::vector<LinePiece> piecewise_lines(std::span<const double> t, std::span<cons
     const double begin = i == 0 ? t.front() : corner_between(t, stretches[i - 1], stretches[i]);
     pieces.push_back({begin, stretches[i].line.slope(), false});
   }
+  join_ways(stretches, pieces);
   settle_levels(stretches, t, noise, pieces);
   return pieces;
 }

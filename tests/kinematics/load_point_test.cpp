@@ -1,0 +1,69 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "tribofit/kinematics/motion.hpp"
+
+// How the load point of velocity steps is read from what was recorded of it.
+
+namespace tribofit {
+namespace {
+
+Trace steps_at(double rate, double duration) {
+  Trace trace;
+  trace.kind = RecordKind::velocity_steps;
+  for (std::size_t i = 0; static_cast<double>(i) < rate * duration; ++i) {
+    trace.time.push_back(static_cast<double>(i) / rate);
+    trace.friction.push_back(0.6);
+  }
+  return trace;
+}
+
+/// Its integral wanders by a hundred times the roundings, and turned in dozens of places.
+TEST(LoadPointMotion, NoiseOfARecordedSpeedMakesNoSteps) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    Trace trace = steps_at(20, 140);
+    std::mt19937_64 generator(seed);
+    std::normal_distribution<double> normal(0, 1e-6);
+    for (const double t : trace.time)
+      trace.load_point_speed.push_back((t < 60 || t >= 80 ? 2e-6 : 20e-6) + normal(generator));
+    const Motion motion = compute_motion(std::move(trace));
+    ASSERT_EQ(motion.load_point.size(), 3U) << seed;
+    EXPECT_NEAR(motion.load_point[1].begin, 60, 0.1) << seed;
+    EXPECT_NEAR(motion.load_point[2].begin, 80, 0.1) << seed;
+    EXPECT_NEAR(motion.load_point[0].speed, 2e-6, 1e-7) << seed;
+    EXPECT_NEAR(motion.load_point[1].speed, 20e-6, 2e-7) << seed;
+  }
+}
+
+/// A ramp keeps its corners, so that its stairs are never further from it than what a digit or two shows.
+TEST(LoadPointMotion, ARampIsFollowedAsItWasRecorded) {
+  constexpr double kDigit = 1e-8;
+  Trace trace = steps_at(20, 120);
+  const auto displacement = [](double t) {
+    const double ramp = std::min(std::max(t - 60, 0.0), 5.0);
+    return 2e-6 * t + 0.5 * (18e-6 / 5) * ramp * ramp + 18e-6 * std::max(t - 65, 0.0);
+  };
+  for (const double t : trace.time) trace.drive_position.push_back(std::round(displacement(t) / kDigit) * kDigit);
+  const std::vector<double> times = trace.time;
+  const Motion motion = compute_motion(std::move(trace));
+  double at = 0, largest = 0;
+  for (std::size_t i = 1, phase = 0; i < times.size(); ++i) {
+    double last = times[i - 1];
+    while (phase + 1 < motion.load_point.size() && motion.load_point[phase + 1].begin <= times[i]) {
+      at += motion.load_point[phase].speed * (motion.load_point[phase + 1].begin - last);
+      last = motion.load_point[++phase].begin;
+    }
+    at += motion.load_point[phase].speed * (times[i] - last);
+    largest = std::max(largest, std::abs(at - displacement(times[i])));
+  }
+  EXPECT_LT(largest, 6e-8);
+}
+
+}  // namespace
+}  // namespace tribofit
