@@ -228,22 +228,44 @@ std::vector<Eigen::RowVectorXd> ModelResiduals::corrections(const std::vector<Bl
   return out;
 }
 
-bool ModelResiduals::evaluate(const double* p, double* residual, double* jacobian) const {
-  const auto n = static_cast<Eigen::Index>(jacobian != nullptr ? parameter_count() : 0);
-  std::vector<Block> blocks;
-  if (!compressed(p, jacobian != nullptr, blocks)) return false;
+const std::vector<ModelResiduals::Block>* ModelResiduals::white_blocks(const double* p) const {
+  const std::size_t n = parameter_count();
+  if (last_.p.size() == n && std::equal(last_.p.begin(), last_.p.end(), p)) return &last_.blocks;
+  last_.p.clear();  // and copies of this for other threads stay small
+  std::vector<Block> blocks = std::exchange(last_.blocks, {});
+  if (!compressed(p, true, blocks)) return nullptr;
   const auto added = corrections(blocks);
-  std::fill_n(residual, count(), 0.0);
+  for (std::size_t k = 0; k < added.size(); ++k) {
+    const auto columns = static_cast<Eigen::Index>(n + 1);
+    blocks[k].leftCols(columns) += blocks[k].col(columns) * added[k];
+  }
+  last_ = {{p, p + n}, std::move(blocks)};
+  return &last_.blocks;
+}
+
+bool ModelResiduals::evaluate(const double* p, double* residual, double* jacobian) const {
+  if (jacobian == nullptr) return evaluate_residual(p, residual);
+  const std::vector<Block>* blocks = white_blocks(p);
+  if (blocks == nullptr) return false;
+  const auto n = static_cast<Eigen::Index>(parameter_count());
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  for (std::size_t k = 0; k < blocks.size(); ++k) {
-    Block& block = blocks[k];
-    if (!added.empty()) block.leftCols(n + 1) += block.col(n + 1) * added[k];
-    if (jacobian == nullptr) {
-      residual[k * rows_per_slip()] = block.col(0).norm();
-      continue;
-    }
+  for (std::size_t k = 0; k < blocks->size(); ++k) {
+    const Block& block = (*blocks)[k];
     Eigen::Map<Eigen::VectorXd>(residual + k * rows_per_slip(), n + 2) = block.col(n);
     Eigen::Map<RowMajor>(jacobian + k * rows_per_slip() * std::size_t(n), n + 2, n) = block.leftCols(n);
+  }
+  return true;
+}
+
+bool ModelResiduals::evaluate_residual(const double* p, double* residual) const {
+  std::vector<Block> blocks;
+  if (!compressed(p, false, blocks)) return false;
+  const auto added = corrections(blocks);
+  std::fill_n(residual, count(), 0.0);
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    Block& block = blocks[k];
+    if (!added.empty()) block.leftCols(1) += block.col(1) * added[k];
+    residual[k * rows_per_slip()] = block.col(0).norm();
   }
   return true;
 }
@@ -276,6 +298,14 @@ std::vector<ModelResiduals::Normal> ModelResiduals::normal_equations(const doubl
   if (weights > 0) {
     for (Normal& slip : out) slip.level_gradient.array() *= through_mean.array() / weights;
   }
+  return out;
+}
+
+std::vector<Eigen::MatrixXd> ModelResiduals::white_rows(const double* p) const {
+  const std::vector<Block>* blocks = white_blocks(p);
+  if (blocks == nullptr) return {};
+  std::vector<Eigen::MatrixXd> out;
+  for (const Block& block : *blocks) out.push_back(block.leftCols(block.cols() - 1));
   return out;
 }
 

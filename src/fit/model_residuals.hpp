@@ -93,7 +93,8 @@ class ModelResiduals final : public Residuals {
 
   /// Rows [J r] of every slip at p, whitened and compressed to at most as many rows as columns plus one; with further
   /// columns [J more r]. Empty where the model is not finite.
-  std::vector<Eigen::MatrixXd> white_rows(const double* p, const FurtherColumns& further = {}) const;
+  std::vector<Eigen::MatrixXd> white_rows(const double* p) const;
+  std::vector<Eigen::MatrixXd> white_rows(const double* p, const FurtherColumns& further) const;
 
   /// Sum of squares of every slip at p, break-away included, stick not, not whitened. Empty where the model is not
   /// finite.
@@ -113,12 +114,14 @@ class ModelResiduals final : public Residuals {
 
   /// Takes the squares of stick for this part of what the noise of v_r makes of them.
   void weaken_stick(double part) {
+    last_.p.clear();
     for (Eigen::MatrixXd& weights : weights_) weights *= std::sqrt(part);
   }
 
   /// Whitens; `whitening` must outlive this object. own_levels: evaluate each slip at its own level; for the model that
   /// the whitening was made with.
   void whiten(const Whitening& whitening, bool own_levels = false) {
+    last_.p.clear();
     whitening_ = &whitening;
     own_levels_ = own_levels && options_.loss == Loss::squares;
   }
@@ -161,6 +164,10 @@ class ModelResiduals final : public Residuals {
             bool plain = false) const;
   bool compressed(const double* p, bool with_jacobian, std::vector<Block>& blocks,
                   const FurtherColumns& further = {}) const;
+  /// The same with the Jacobian, whitened; nullptr where the model is not finite. A search often asks once more for
+  /// where another one ended.
+  const std::vector<Block>* white_blocks(const double* p) const;
+  bool evaluate_residual(const double* p, double* residual) const;
   /// The same of the slips [begin, end).
   bool compress(std::size_t begin, std::size_t end, const double* p, bool with_jacobian, std::vector<Block>& blocks,
                 const FurtherColumns& further) const;
@@ -184,6 +191,11 @@ class ModelResiduals final : public Residuals {
   bool own_levels_ = false;
   std::size_t first_part_ = 0;            ///< of a stick, from which the model's creep holds
   std::vector<Eigen::MatrixXd> weights_;  ///< of the parts of a stick, for each record
+  struct Evaluated {
+    std::vector<double> p;  ///< empty: none yet
+    std::vector<Block> blocks;
+  };
+  mutable Evaluated last_;  ///< see white_blocks()
 };
 
 template <class Work>
