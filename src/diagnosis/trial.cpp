@@ -311,15 +311,16 @@ std::optional<Promise> combined_phases(const FrictionModel& model, const ModelRe
   return best;
 }
 
-/// Of the starts in one place, which differ in their phases alone, the best is kept.
-void keep_best_of_place(Promise promise, std::vector<Promise>& promises) {
-  const auto same = std::find_if(promises.begin(), promises.end(),
-                                 [&](const Promise& other) { return other.place == promise.place; });
-  if (same == promises.end()) {
-    promises.push_back(std::move(promise));
-  } else if (promise.score < same->score) {
-    *same = std::move(promise);
+/// Of the starts in one place, which differ in their phases alone, the one that is lowest now: a linear step promises
+/// the same from every phase, and costs a few times as much as a look at the squares.
+std::optional<Promise> nearest_phase(const ModelResiduals& residuals, const std::vector<Promise>& tried) {
+  if (tried.size() == 1) return tried[0];
+  std::map<double, const Promise*> by_squares;
+  for (const Promise& one : tried) {
+    const double here = residuals.white_squares(one.start.data());
+    if (std::isfinite(here)) by_squares.emplace(here, &one);
   }
+  return by_squares.empty() ? std::nullopt : std::optional(*by_squares.begin()->second);
 }
 
 }  // namespace
@@ -338,23 +339,22 @@ SearchStart search_start_of(const DiagnosisContext& context, const Level& level,
     const std::optional<StepSquares> step = squares_of_step(residuals, promise.start, bounds, *rigid);
     if (!step) return;
     promise.squares = std::min(step->here, step->there);
-    // A linear step promises the same from every phase; the start that is lower now is the nearer one.
-    promise.score = step->there + 1e-2 * step->here;
-    keep_best_of_place(std::move(promise), promises);
+    promise.score = step->there + 1e-2 * step->here;  // the start that is lower now is the nearer one
+    promises.push_back(std::move(promise));
   };
   std::map<std::vector<double>, std::vector<Promise>> places;
   for (const auto& values : starts.values) {
     for (std::size_t from = 0; from < bases.size(); ++from) {
       Promise promise = start_with(bases[from], model, candidate.info, values, bounds);
       promise.place.push_back(static_cast<double>(from));
-      if (model.count_of(candidate.info.key) > candidate.info.parameters.size()) {
-        places[promise.place].push_back(promise);
-      }
-      try_start(std::move(promise));
+      places[promise.place].push_back(std::move(promise));
     }
   }
+  const bool of_each = model.count_of(candidate.info.key) > candidate.info.parameters.size();  // phases of each record
   for (const auto& [place, tried] : places) {
-    if (auto combined = combined_phases(model, residuals, level.observations, tried)) try_start(std::move(*combined));
+    auto best =
+        of_each ? combined_phases(model, residuals, level.observations, tried) : nearest_phase(residuals, tried);
+    if (best) try_start(std::move(*best));
   }
   std::stable_sort(promises.begin(), promises.end(),
                    [](const Promise& a, const Promise& b) { return a.score < b.score; });
