@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <optional>
 
 #include "base_law.hpp"
 #include "findings.hpp"
@@ -73,18 +74,32 @@ Ladder reported_of(const DiagnosisContext& context, const CompetingLaws& laws, c
   return reported;
 }
 
+/// Whether a fit ended where the ladder had found the model: within its 95 % intervals.
+bool ends_at(const std::vector<double>& found, const Fit& fit) {
+  if (fit.parameters.size() != found.size()) return false;
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    if (!(found[k] >= fit.parameters[k].lower95 && found[k] <= fit.parameters[k].upper95)) return false;
+  }
+  return true;
+}
+
 /// A fit of a model as `identify` makes it, from where the ladder found it. A search that ends on a bound may have gone
-/// to the wrong valley: it is made from the starts of `identify` as well, and the lower of the two holds.
+/// to the wrong valley: it is made from the starts of `identify` as well, and where they lead elsewhere the lower of
+/// the two holds. at_bound: whether the ladder found it there.
 Fit fit_as_identify(const FrictionModel& model, std::span<const Record> records, const Instruments& instruments,
-                    const FitOptions& cold, std::vector<double> found) {
+                    const FitOptions& cold, std::vector<double> found, bool at_bound) {
   const Observations own = observations_for(model, records);
-  if (model.effects().empty()) return fit_model(model, records, own, instruments, cold);
+  const auto fit_cold = [&] { return fit_model(model, records, own, instruments, cold); };
+  if (model.effects().empty()) return fit_cold();
+  std::optional<Fit> again;
+  if (at_bound) again = fit_cold();
+  if (again && ends_at(found, *again)) return std::move(*again);
   FitOptions warm = cold;
   warm.start = std::move(found);
   Fit fit = fit_model(model, records, own, instruments, warm);
   if (std::ranges::none_of(fit.parameters, &FitParameter::at_bound)) return fit;
-  Fit again = fit_model(model, records, own, instruments, cold);
-  return !again.parameters.empty() && again.error.rmse <= fit.error.rmse ? again : fit;
+  if (!again) again = fit_cold();
+  return !again->parameters.empty() && again->error.rmse <= fit.error.rmse ? std::move(*again) : fit;
 }
 
 /// Fits every rung. The first and the last, which are reported with all their figures, are fitted to what `identify`
@@ -97,7 +112,8 @@ std::vector<Fit> fit_rungs(const DiagnosisContext& context, const Instruments& i
   run_tasks(ladder.steps.size(), context.threads, [&](std::size_t k) {
     const Trial& trial = ladder.steps[k].trial;
     if (k == 0 || k + 1 == ladder.steps.size()) {
-      fits[k] = fit_as_identify(trial.model, context.records, instruments, options, trial.p);
+      const bool at_bound = std::ranges::find(trial.at_bound, true) != trial.at_bound.end();
+      fits[k] = fit_as_identify(trial.model, context.records, instruments, options, trial.p, at_bound);
       return;
     }
     FitOptions warm = options;
@@ -110,7 +126,8 @@ std::vector<Fit> fit_rungs(const DiagnosisContext& context, const Instruments& i
   });
   if (failed != fits.end() && failed - fits.begin() > 1) {  // the new last rung
     Fit& last = *(failed - 1);
-    last = fit_as_identify(last.model, context.records, instruments, options, last.values());
+    const bool at_bound = std::ranges::any_of(last.parameters, &FitParameter::at_bound);
+    last = fit_as_identify(last.model, context.records, instruments, options, last.values(), at_bound);
   }
   ladder.steps.resize(static_cast<std::size_t>(failed - fits.begin()));
   fits.erase(failed, fits.end());
