@@ -38,6 +38,7 @@ class QuietLogging {
 inline std::string explain(const ceres::Solver::Summary& summary) {
   switch (summary.termination_type) {
     case ceres::CONVERGENCE:
+    case ceres::USER_SUCCESS:
       return "converged";
     case ceres::NO_CONVERGENCE:
       return "did not converge within " + std::to_string(summary.iterations.size()) + " iterations";

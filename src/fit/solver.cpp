@@ -34,7 +34,7 @@ class Cost : public ceres::CostFunction {
     for (std::size_t i = 0; !all_free && i < problem_.count(); ++i) {
       for (std::size_t k = 0; k < free_.size(); ++k) jacobian[i * free_.size() + k] = all_[i * p_.size() + free_[k]];
     }
-    note_norms(jacobian);
+    note(residuals, jacobian);
     return true;
   }
 
@@ -47,32 +47,71 @@ class Cost : public ceres::CostFunction {
     return false;
   }
 
+  /// Free parameters that a bound holds back where the search stands: they are on it, and beyond it the cost is less.
+  std::vector<std::size_t> held_back(std::span<const double> lower, std::span<const double> upper) const {
+    std::vector<std::size_t> out;
+    for (std::size_t k = 0; k < last_slope_.size() && !lower.empty(); ++k) {
+      const std::size_t i = free_[k];
+      if ((here_[k] <= lower[i] && last_slope_[k] > 0) || (here_[k] >= upper[i] && last_slope_[k] < 0))
+        out.push_back(i);
+    }
+    return out;
+  }
+
  private:
-  void note_norms(const double* jacobian) const {
+  /// Ceres asks for the Jacobian where the search stands, and only there.
+  void note(const double* residuals, const double* jacobian) const {
     last_norms_.assign(free_.size(), 0.0);
-    for (std::size_t i = 0; i < problem_.count() * free_.size(); ++i) {
-      last_norms_[i % free_.size()] += jacobian[i] * jacobian[i];
+    last_slope_.assign(free_.size(), 0.0);
+    for (std::size_t i = 0; i < problem_.count(); ++i) {
+      for (std::size_t k = 0; k < free_.size(); ++k) {
+        const double derivative = jacobian[i * free_.size() + k];
+        last_norms_[k] += derivative * derivative;
+        last_slope_[k] += derivative * residuals[i];
+      }
     }
     if (first_norms_.empty()) first_norms_ = last_norms_;
+    here_.clear();
+    for (const std::size_t i : free_) here_.push_back(p_[i]);
   }
 
   mutable std::vector<double> first_norms_, last_norms_;  ///< squared column norms of the first and last Jacobian
+  mutable std::vector<double> last_slope_, here_;         ///< of the cost, and the free parameters, with the last one
   const Residuals& problem_;
   mutable std::vector<double> p_;
   std::vector<std::size_t> free_;
   mutable std::vector<double> all_;
 };
 
+/// Ends a descent with the first step that does not lower the cost while a bound holds a parameter back. The bound cut
+/// that step off, and what is left of it is not the best one for the others: shorter and shorter ones would follow.
+class StopAtBound : public ceres::IterationCallback {
+ public:
+  StopAtBound(const Cost& cost, std::span<const double> lower, std::span<const double> upper)
+      : cost_(cost), lower_(lower), upper_(upper) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& step) override {
+    const bool failed = step.iteration > 0 && !step.step_is_successful;
+    return failed && !cost_.held_back(lower_, upper_).empty() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+                                                              : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const Cost& cost_;
+  std::span<const double> lower_, upper_;
+};
+
 /// Gauss-Newton steps from a minimum that is known to half its digits (the cost is flat there to rounding). Each must
-/// be shorter than the one before it, stay within the bounds and not raise the cost beyond rounding.
+/// be shorter than the one before it, stay within the bounds and not raise the cost beyond rounding. Where residuals
+/// are large they may shorten slowly, by nearly the same part each time: what is still to come is then taken with them
+/// (D. G. Anderson, J. ACM 12 (1965) 547, doi:10.1145/321296.321305, with one step before).
 void polish(const Residuals& problem, const std::vector<std::size_t>& free, std::span<const double> lower,
             std::span<const double> upper, SolverResult& result) {
   constexpr int kSteps = 30;
   const auto rows = static_cast<Eigen::Index>(problem.count()), all = static_cast<Eigen::Index>(result.p.size());
-  Eigen::VectorXd residual(rows);
+  Eigen::VectorXd residual(rows), last_change, last_step;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> full(rows, all);
   double last = 1e-3;  // a longer step is no polish
-  for (int step = 0; step < kSteps; ++step) {
+  for (int count = 0; count < kSteps; ++count) {
     if (!problem.evaluate(result.p.data(), residual.data(), full.data())) return;
     Eigen::MatrixXd jacobian(rows, static_cast<Eigen::Index>(free.size()));
     for (std::size_t k = 0; k < free.size(); ++k) {
@@ -81,16 +120,24 @@ void polish(const Residuals& problem, const std::vector<std::size_t>& free, std:
     const Eigen::VectorXd scale = jacobian.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
     jacobian *= scale.asDiagonal();
     const Eigen::VectorXd change = scale.asDiagonal() * least_squares(jacobian, -residual);
+    Eigen::VectorXd step = change;
+    if (count > 0) {
+      const Eigen::VectorXd shorter = (change - last_change).cwiseQuotient(scale);
+      const double part = shorter.dot(change.cwiseQuotient(scale)) / std::max(shorter.squaredNorm(), 1e-300);
+      step -= part * (last_step + change - last_change);
+    }
     std::vector<double> p = result.p;
     double length = 0;
     for (std::size_t k = 0; k < free.size(); ++k) {
-      const double moved = change(static_cast<Eigen::Index>(k));
-      p[free[k]] += moved;
-      length = std::max(length, std::abs(moved) / std::max(std::abs(p[free[k]]), 1e-300));
+      const auto i = static_cast<Eigen::Index>(k);
+      p[free[k]] += step(i);
+      length = std::max(length, std::abs(change(i)) / std::max(std::abs(p[free[k]]), 1e-300));
       if (!lower.empty() && (p[free[k]] < lower[free[k]] || p[free[k]] > upper[free[k]])) return;
     }
     if (!(length < last)) return;
     last = length;
+    last_change = change;
+    last_step = step;
     if (!problem.evaluate(p.data(), residual.data(), nullptr)) return;
     const double cost = 0.5 * residual.squaredNorm();
     if (cost > result.cost * (1 + 1e-8)) return;
@@ -100,11 +147,17 @@ void polish(const Residuals& problem, const std::vector<std::size_t>& free, std:
   }
 }
 
-/// One descent from `start`. ran_away: a parameter ended where no residual feels it (see Cost).
-SolverResult descend(const Residuals& problem, std::span<const double> start, const std::vector<std::size_t>& free,
-                     std::span<const double> lower, std::span<const double> upper, const SolverOptions& options,
-                     bool& ran_away) {
+/// One descent from a start.
+struct Descent {
   SolverResult result;
+  bool ran_away = false;               ///< a parameter ended where no residual feels it (see Cost)
+  std::vector<std::size_t> held_back;  ///< by bounds where it ended
+};
+
+Descent descend(const Residuals& problem, std::span<const double> start, const std::vector<std::size_t>& free,
+                std::span<const double> lower, std::span<const double> upper, const SolverOptions& options) {
+  Descent out;
+  SolverResult& result = out.result;
   result.p.assign(start.begin(), start.end());
   std::vector<double> x;
   for (const std::size_t k : free) x.push_back(start[k]);
@@ -118,18 +171,22 @@ SolverResult descend(const Residuals& problem, std::span<const double> start, co
   }
   ceres::Solver::Options solver = ceres_options(options);
   solver.linear_solver_type = ceres::DENSE_QR;
+  StopAtBound at_bound(*cost, lower, upper);
+  solver.callbacks.push_back(&at_bound);
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &ceres_problem, &summary);
   stop_point();
 
   for (std::size_t j = 0; j < free.size(); ++j) result.p[free[j]] = x[j];
   result.cost = summary.IsSolutionUsable() ? summary.final_cost : std::numeric_limits<double>::infinity();
-  result.converged = summary.termination_type == ceres::CONVERGENCE;
+  const bool at_minimum = summary.termination_type == ceres::CONVERGENCE;
+  result.converged = at_minimum || summary.termination_type == ceres::USER_SUCCESS;
   result.iterations = static_cast<int>(summary.iterations.size());
   result.message = explain(summary);
-  ran_away = cost->ran_away();
-  if (options.careful && summary.IsSolutionUsable()) polish(problem, free, lower, upper, result);
-  return result;
+  out.ran_away = cost->ran_away();
+  out.held_back = cost->held_back(lower, upper);
+  if (options.careful && at_minimum && out.held_back.empty()) polish(problem, free, lower, upper, result);
+  return out;
 }
 
 /// What is returned where there is nothing to solve, or too little to solve it with.
@@ -144,18 +201,17 @@ SolverResult unsolved(const Residuals& problem, std::span<const double> start, b
   return result;
 }
 
-/// A step that is cut off at a bound is not the best one for the others, and shorter and shorter ones end far from
-/// where they should. What ended on a bound is held there, and the others go on.
-void finish_beside_bounds(const Residuals& problem, const std::vector<std::size_t>& free, std::span<const double> lower,
-                          std::span<const double> upper, const SolverOptions& options, SolverResult& result) {
-  std::vector<std::size_t> inside;
-  for (const std::size_t k : free) {
-    if (lower.empty() || (result.p[k] > lower[k] && result.p[k] < upper[k])) inside.push_back(k);
+/// What bounds hold back is held there, and the others go on.
+void finish_beside_bounds(const Residuals& problem, std::vector<std::size_t> free, std::span<const double> lower,
+                          std::span<const double> upper, const SolverOptions& options, Descent& last) {
+  while (!last.held_back.empty() && last.held_back.size() < free.size()) {
+    std::erase_if(free, [&](std::size_t k) {
+      return std::find(last.held_back.begin(), last.held_back.end(), k) != last.held_back.end();
+    });
+    Descent next = descend(problem, last.result.p, free, lower, upper, options);
+    if (next.ran_away || !(next.result.cost <= last.result.cost)) return;
+    last = std::move(next);
   }
-  if (inside.empty() || inside.size() == free.size()) return;
-  bool ran_away = false;
-  SolverResult finished = descend(problem, result.p, inside, lower, upper, options, ran_away);
-  if (finished.converged && !ran_away && finished.cost <= result.cost) result = std::move(finished);
 }
 
 }  // namespace
@@ -169,16 +225,15 @@ SolverResult minimize(const Residuals& problem, std::span<const double> start, s
   }
   if (free.empty() || problem.count() < free.size()) return unsolved(problem, start, free.empty());
 
-  bool ran_away = false;
-  SolverResult result = descend(problem, start, free, lower, upper, options, ran_away);
-  if (options.careful && (!result.converged || ran_away)) {
+  Descent found = descend(problem, start, free, lower, upper, options);
+  if (options.careful && (!found.result.converged || found.ran_away)) {
     SolverOptions cautious = options;
     cautious.trust_radius = 1e-4;
-    SolverResult retry = descend(problem, start, free, lower, upper, cautious, ran_away);
-    if (retry.cost < result.cost) result = std::move(retry);
+    Descent retry = descend(problem, start, free, lower, upper, cautious);
+    if (retry.result.cost < found.result.cost) found = std::move(retry);
   }
-  finish_beside_bounds(problem, free, lower, upper, options, result);
-  return result;
+  finish_beside_bounds(problem, std::move(free), lower, upper, options, found);
+  return std::move(found.result);
 }
 
 std::vector<double> covariance_of_independent(const Residuals& problem, std::span<const double> p) {
