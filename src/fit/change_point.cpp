@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "tribofit/statistics/change_point.hpp"
@@ -12,54 +13,63 @@ namespace tribofit {
 
 namespace {
 
-/// Squares of every slip at p, whitened as the residuals are.
-std::vector<double> squares_at(const ModelResiduals& residuals, const std::vector<double>& p) {
-  const std::size_t slips = residuals.slips().size();
-  const std::size_t rows = slips > 0 ? residuals.count() / slips : 0;
-  std::vector<double> rest(residuals.count()), out(slips);
-  if (!residuals.evaluate(p.data(), rest.data(), nullptr)) return {};
-  for (std::size_t i = 0; i < rest.size(); ++i) out[i / rows] += rest[i] * rest[i];
-  return out;
-}
-
-double sum_at(const ModelResiduals& residuals, std::vector<double>& p, std::size_t index, double value) {
-  p[index] = value;
-  const std::vector<double> squares = squares_at(residuals, p);
-  if (squares.empty()) return std::numeric_limits<double>::infinity();
-  return std::accumulate(squares.begin(), squares.end(), 0.0);
-}
-
-/// Slips in order of time, and what all of them leave when the change comes just before each, or after the last.
-struct Scan {
-  std::vector<double> begin, end;  ///< of each slip [s]
-  std::vector<double> squares;     ///< one more than slips
-};
-
-Scan scan_of(const ChangePoint& point, const ModelResiduals& residuals, const Observations& observations,
-             std::vector<double> p) {
-  constexpr double kFar = 1e6;  // [s], far from any record
-  Scan out;
-  p[point.time] = kFar;
-  const std::vector<double> before = squares_at(residuals, p);
-  p[point.time] = -kFar;
-  const std::vector<double> after = squares_at(residuals, p);
-  if (before.empty() || after.empty()) return out;
-  const auto& slips = observations.slips;
-  std::vector<std::size_t> order(slips.size());
-  std::iota(order.begin(), order.end(), std::size_t(0));
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return observations.time[slips[a].begin] < observations.time[slips[b].begin];
-  });
-  std::vector<double> sorted_before, sorted_after;
-  for (const std::size_t k : order) {
-    out.begin.push_back(observations.time[slips[k].begin]);
-    out.end.push_back(observations.time[slips[k].end - 1]);
-    sorted_before.push_back(before[k]);
-    sorted_after.push_back(after[k]);
+/// What slips leave, whitened, when the change comes at one time or another. It touches the slips beside it alone:
+/// those further away are looked at once, before the change and after it.
+class ChangeInTime {
+ public:
+  ChangeInTime(const ChangePoint& point, const ModelResiduals& residuals, const Observations& observations,
+               std::vector<double> p)
+      : point_(point), residuals_(residuals), p_(std::move(p)), order_(observations.slips.size()) {
+    constexpr double kFar = 1e6;  // [s], far from any record
+    before_ = blocks_at(kFar);
+    after_ = blocks_at(-kFar);
+    if (before_.empty() || after_.empty()) return;
+    const auto& slips = observations.slips;
+    std::iota(order_.begin(), order_.end(), std::size_t(0));
+    std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
+      return observations.time[slips[a].begin] < observations.time[slips[b].begin];
+    });
+    const std::vector<double> before = residuals.squares_of(before_), after = residuals.squares_of(after_);
+    std::vector<double> sorted_before, sorted_after;
+    for (const std::size_t k : order_) {
+      begin.push_back(observations.time[slips[k].begin]);
+      end.push_back(observations.time[slips[k].end - 1]);
+      sorted_before.push_back(before[k]);
+      sorted_after.push_back(after[k]);
+    }
+    squares = squares_by_change(sorted_before, sorted_after);
   }
-  out.squares = squares_by_change(sorted_before, sorted_after);
-  return out;
-}
+
+  std::vector<double> begin, end;  ///< of each slip, in order of time [s]; empty where the model is not finite
+  std::vector<double> squares;     ///< of all slips when the change comes just before each, or after the last
+
+  /// Squares of all slips.
+  double squares_at(double time) {
+    constexpr std::ptrdiff_t kBeside = 2;  // slips before and after it
+    const auto next = std::upper_bound(begin.begin(), begin.end(), time) - begin.begin();
+    std::vector<Eigen::MatrixXd> blocks = after_;
+    p_[point_.time] = time;
+    for (std::ptrdiff_t i = 0; i < std::min(next + kBeside, std::ssize(order_)); ++i) {
+      const std::size_t k = order_[static_cast<std::size_t>(i)];
+      blocks[k] = i < next - kBeside ? before_[k] : residuals_.residual_block(k, p_.data());
+      if (blocks[k].size() == 0) return std::numeric_limits<double>::infinity();
+    }
+    const std::vector<double> left = residuals_.squares_of(std::move(blocks));
+    return std::accumulate(left.begin(), left.end(), 0.0);
+  }
+
+ private:
+  std::vector<Eigen::MatrixXd> blocks_at(double time) {
+    p_[point_.time] = time;
+    return residuals_.residual_blocks(p_.data());
+  }
+
+  const ChangePoint& point_;
+  const ModelResiduals& residuals_;
+  std::vector<double> p_;
+  std::vector<std::size_t> order_;               ///< of the slips in time
+  std::vector<Eigen::MatrixXd> before_, after_;  ///< of each slip, when the change comes after it and before it
+};
 
 }  // namespace
 
@@ -75,16 +85,16 @@ double best_change(const ChangePoint& point, const ModelResiduals& residuals, co
                    const Bounds& bounds, std::vector<double> p) {
   const double now = p[point.time], lower = bounds.lower[point.time], upper = bounds.upper[point.time];
   if (!(lower < upper)) return now;
-  const Scan scan = scan_of(point, residuals, observations, p);
+  ChangeInTime scan(point, residuals, observations, std::move(p));
   if (scan.begin.size() < 2) return now;
   // Not before the first slip nor after the last: that is no change.
   const auto least = std::min_element(scan.squares.begin() + 1, scan.squares.end() - 1);
   const auto k = static_cast<std::size_t>(least - scan.squares.begin());  // before slip k
-  const auto left = [&](double time) { return sum_at(residuals, p, point.time, time); };
-  double best = std::clamp(0.5 * (scan.end[k - 1] + scan.begin[k]), lower, upper), best_squares = left(best);
+  double best = std::clamp(0.5 * (scan.end[k - 1] + scan.begin[k]), lower, upper);
+  double best_squares = scan.squares_at(best);
   const auto try_time = [&](double time) {
     if (time < lower || time > upper) return;
-    const double squares = left(time);
+    const double squares = scan.squares_at(time);
     if (!(squares < best_squares)) return;
     best = time;
     best_squares = squares;
@@ -115,11 +125,12 @@ std::pair<double, double> interval_of_change(const ChangePoint& point, const Mod
     spread += std::pow(equations.gradient[c](size), 2);
     known += equations.curvature[c](size, size);
   }
-  const Scan scan = scan_of(point, residuals, observations, p);
-  double least = sum_at(residuals, p, point.time, best);
+  ChangeInTime scan(point, residuals, observations, std::move(p));
+  if (scan.squares.empty()) return {bounds.lower[point.time], bounds.upper[point.time]};
+  double least = scan.squares_at(best);
   for (std::size_t k = 1; k + 1 < scan.squares.size(); ++k) least = std::min(least, scan.squares[k]);
   const double limit = least + kChangePointRise95 * (known > 0 ? spread / known : 0);
-  const auto inside = [&](double time) { return sum_at(residuals, p, point.time, time) < limit; };
+  const auto inside = [&](double time) { return scan.squares_at(time) < limit; };
   // Between the slip before which the change would leave too much and the next lies the wall.
   const auto wall = [&](double in, double out) {
     for (int i = 0; i < 12; ++i) {

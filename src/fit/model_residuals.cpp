@@ -244,7 +244,12 @@ const std::vector<ModelResiduals::Block>* ModelResiduals::white_blocks(const dou
 }
 
 bool ModelResiduals::evaluate(const double* p, double* residual, double* jacobian) const {
-  if (jacobian == nullptr) return evaluate_residual(p, residual);
+  if (jacobian == nullptr) {
+    const std::vector<double> squares = squares_of(residual_blocks(p));
+    std::fill_n(residual, count(), 0.0);
+    for (std::size_t k = 0; k < squares.size(); ++k) residual[k * rows_per_slip()] = std::sqrt(squares[k]);
+    return squares.size() == slips_.size();
+  }
   const std::vector<Block>* blocks = white_blocks(p);
   if (blocks == nullptr) return false;
   const auto n = static_cast<Eigen::Index>(parameter_count());
@@ -257,17 +262,24 @@ bool ModelResiduals::evaluate(const double* p, double* residual, double* jacobia
   return true;
 }
 
-bool ModelResiduals::evaluate_residual(const double* p, double* residual) const {
+std::vector<Eigen::MatrixXd> ModelResiduals::residual_blocks(const double* p) const {
   std::vector<Block> blocks;
-  if (!compressed(p, false, blocks)) return false;
+  return compressed(p, false, blocks) ? blocks : std::vector<Block>();
+}
+
+Eigen::MatrixXd ModelResiduals::residual_block(std::size_t k, const double* p) const {
+  std::vector<Block> blocks(k + 1);
+  return compress(k, k + 1, p, false, blocks, {}) ? std::move(blocks[k]) : Block();
+}
+
+std::vector<double> ModelResiduals::squares_of(std::vector<Eigen::MatrixXd> blocks) const {
   const auto added = corrections(blocks);
-  std::fill_n(residual, count(), 0.0);
+  std::vector<double> out;
   for (std::size_t k = 0; k < blocks.size(); ++k) {
-    Block& block = blocks[k];
-    if (!added.empty()) block.leftCols(1) += block.col(1) * added[k];
-    residual[k * rows_per_slip()] = block.col(0).norm();
+    if (!added.empty()) blocks[k].leftCols(1) += blocks[k].col(1) * added[k];
+    out.push_back(blocks[k].col(0).squaredNorm());
   }
-  return true;
+  return out;
 }
 
 std::vector<ModelResiduals::Normal> ModelResiduals::normal_equations(const double* p) const {

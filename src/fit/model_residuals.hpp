@@ -100,6 +100,13 @@ class ModelResiduals final : public Residuals {
   /// finite.
   std::vector<double> squares(const double* p) const;
 
+  /// Residuals of every slip at p, compressed, and those of one slip (a place in slips()): what changes in few slips
+  /// needs to be looked at in those alone. Empty where the model is not finite.
+  std::vector<Eigen::MatrixXd> residual_blocks(const double* p) const;
+  Eigen::MatrixXd residual_block(std::size_t k, const double* p) const;
+  /// Their sum of squares of every slip, whitened.
+  std::vector<double> squares_of(std::vector<Eigen::MatrixXd> blocks) const;
+
   /// Sum of squares of all rows at p, whitened. NaN where the model is not finite.
   double white_squares(const double* p) const;
 
@@ -167,7 +174,6 @@ class ModelResiduals final : public Residuals {
   /// The same with the Jacobian, whitened; nullptr where the model is not finite. A search often asks once more for
   /// where another one ended.
   const std::vector<Block>* white_blocks(const double* p) const;
-  bool evaluate_residual(const double* p, double* residual) const;
   /// The same of the slips [begin, end).
   bool compress(std::size_t begin, std::size_t end, const double* p, bool with_jacobian, std::vector<Block>& blocks,
                 const FurtherColumns& further) const;
