@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -11,6 +12,7 @@
 #include "reduced.hpp"
 #include "refinement.hpp"
 #include "spectral_lines.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 
@@ -32,38 +34,53 @@ SolverOptions careful_search() {
   return careful;
 }
 
-/// A spectral line is narrower than any random start would find: the strongest lines about the mean friction over
-/// speed are starts too, each with a few phases.
-void add_starts_at_lines(const FitContext& context, std::vector<std::vector<double>>& starts) {
+/// A start at a line with the phase, of a few, that leaves least: only a line that is in phase draws a search.
+std::vector<double> start_at_line(const ModelResiduals& residuals, std::vector<double> start, std::size_t phase) {
   constexpr int kPhases = 4;
+  std::vector<double> nearest = start;
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < kPhases; ++k) {
+    start[phase] = 2 * std::numbers::pi * k / kPhases - std::numbers::pi;
+    const double squares = residuals.white_squares(start.data());
+    if (!(squares < least)) continue;
+    least = squares;
+    nearest = start;
+  }
+  return nearest;
+}
+
+/// A spectral line is narrower than any random start would find: the strongest lines about the mean friction over
+/// speed are starts too.
+void add_starts_at_lines(const FitContext& context, std::vector<std::vector<double>>& starts) {
+  constexpr std::size_t kValuesToCompare = 4000;
   const auto parameters = context.model.parameters();
+  const std::vector<double> from_data = starts[0];
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     if (parameters[k].parameter.search != ParameterSearch::steady_line) continue;
-    const auto phase_of_line = std::find_if(parameters.begin(), parameters.end(), [&](const FrictionModel::Slot& slot) {
+    const auto phase = std::find_if(parameters.begin(), parameters.end(), [&](const FrictionModel::Slot& slot) {
       return slot.effect == parameters[k].effect && slot.parameter.periodic;
     });
-    const auto at_phase = static_cast<std::size_t>(phase_of_line - parameters.begin());
-    const bool has_phase = phase_of_line != parameters.end();
     const SpectralLines lines =
         strongest_lines(context.records[0], context.observations, about_mean_curve(context.observations),
                         context.bounds.lower[k], context.bounds.upper[k], context.evaluation.threads);
+    const ModelResiduals residuals = context.residuals(some_slips(context.observations, kValuesToCompare));
     for (const double frequency : lines.frequencies) {
-      for (int phase = 0; phase < (has_phase ? kPhases : 1); ++phase) {
-        std::vector<double> start = start_from_data(context.model, context.observations, context.bounds);
-        start[k] = frequency;
-        if (has_phase) start[at_phase] = 2 * std::numbers::pi * phase / kPhases - std::numbers::pi;
-        starts.push_back(std::move(start));
-      }
+      starts.push_back(from_data);
+      starts.back()[k] = frequency;
+      if (phase != parameters.end())
+        starts.back() = start_at_line(residuals, starts.back(), static_cast<std::size_t>(phase - parameters.begin()));
     }
   }
 }
 
 /// Where the search begins: the starts of the data or of the user, each once.
 std::vector<std::vector<double>> different_starts(const FitContext& context) {
-  auto starts =
-      make_starts(context.model, context.observations, context.bounds, context.options.starts, context.options.seed);
-  add_starts_at_lines(context, starts);
-  if (!context.options.start.empty()) starts = {context.options.start};
+  std::vector<std::vector<double>> starts = {context.options.start};
+  if (context.options.start.empty()) {
+    starts =
+        make_starts(context.model, context.observations, context.bounds, context.options.starts, context.options.seed);
+    add_starts_at_lines(context, starts);
+  }
   for (auto& start : starts) apply_given(context.model, context.options.given, context.bounds, start);
   for (std::size_t k = 1; k < starts.size();) {  // where all is given, all starts are one
     const auto here = starts.begin() + static_cast<std::ptrdiff_t>(k);
@@ -80,8 +97,9 @@ std::vector<std::vector<double>> different_starts(const FitContext& context) {
 std::vector<double> best_of_starts(const FitContext& context, const std::vector<std::vector<double>>& starts,
                                    std::size_t values, const SolverOptions& search, Fit& fit) {
   const std::vector<std::size_t> part = some_slips(context.observations, values);
-  std::vector<SolverResult> tries;
-  for (const auto& start : starts) tries.push_back(context.solve(part, start, search));
+  std::vector<SolverResult> tries(starts.size());
+  run_tasks(starts.size(), context.evaluation.threads,
+            [&](std::size_t k) { tries[k] = context.solve(part, starts[k], search); });
   std::size_t best = 0;
   for (std::size_t k = 1; k < tries.size(); ++k) {
     if (tries[k].cost < tries[best].cost * (1 - 1e-6)) best = k;

@@ -169,13 +169,18 @@ SpectralLines strongest_lines(const Record& record, const Observations& observat
   for (const Cycle& cycle : record.segmentation->cycles) add_stick(motion, cycle.stick, rate, series);
   // The whole record resolves more finely than the stretch that was transformed.
   const double width = kBesidePeak / length, fine = kFinerThanBin / motion.duration();
+  constexpr double kPartsOfPeak = 5;             // a peak is as wide as four such steps
   std::vector<std::pair<double, double>> found;  // strength and frequency
   for (const double coarse : take_peaks(amplitude_spectrum(series, 1 / rate), lowest, highest)) {
-    std::vector<std::pair<double, double>> tried;
-    for (double f = coarse - width; f <= coarse + width; f += fine) tried.push_back({0, f});
-    run_tasks(tried.size(), threads,
-              [&](std::size_t k) { tried[k].first = strength(observations, residual, tried[k].second); });
-    found.push_back(tried.empty() ? std::pair{-1.0, coarse} : *std::max_element(tried.begin(), tried.end()));
+    const auto strongest = [&](double middle, double beside, double step) {
+      std::vector<std::pair<double, double>> tried;
+      for (double f = middle - beside; f <= middle + beside; f += step) tried.push_back({0, f});
+      run_tasks(tried.size(), threads,
+                [&](std::size_t k) { tried[k].first = strength(observations, residual, tried[k].second); });
+      return tried.empty() ? std::pair{-1.0, coarse} : *std::max_element(tried.begin(), tried.end());
+    };
+    const double step = kPartsOfPeak * fine;
+    found.push_back(strongest(strongest(coarse, width, step).second, step - fine, fine));
   }
   std::sort(found.rbegin(), found.rend());
   for (const auto& [strength, frequency] : found) lines.frequencies.push_back(frequency);
