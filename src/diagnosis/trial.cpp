@@ -117,7 +117,7 @@ SolverOptions quick_search(int iterations) {
   options.max_iterations = iterations;
   options.relative_cost = 1e-5;  // far below what a comparison can see
   options.relative_step = 1e-7;
-  options.careful = false;
+  options.careful = false, options.hold_at_bounds = true;
   return options;
 }
 

@@ -246,6 +246,7 @@ SolverOptions short_search() {
   SolverOptions look = quick_search();
   look.max_iterations = 12;
   look.relative_cost = 1e-6;
+  look.hold_at_bounds = true;
   return look;
 }
 

@@ -172,7 +172,7 @@ Descent descend(const Residuals& problem, std::span<const double> start, const s
   ceres::Solver::Options solver = ceres_options(options);
   solver.linear_solver_type = ceres::DENSE_QR;
   StopAtBound at_bound(*cost, lower, upper);
-  solver.callbacks.push_back(&at_bound);
+  if (options.hold_at_bounds) solver.callbacks.push_back(&at_bound);
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &ceres_problem, &summary);
   stop_point();

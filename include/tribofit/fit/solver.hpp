@@ -26,6 +26,10 @@ struct SolverOptions {
   /// Take the last digits by plain Gauss-Newton steps, which the rounding of the cost does not stop, and start again
   /// with short steps where a parameter ran away. Costs a few more evaluations.
   bool careful = true;
+  /// Hold what a bound holds back as soon as the bound cuts off a step that does not lower the cost, without trying
+  /// shorter ones. Takes far fewer evaluations, and now and then ends in another minimum: for searches of which the
+  /// best is compared.
+  bool hold_at_bounds = false;
 };
 
 struct SolverResult {
