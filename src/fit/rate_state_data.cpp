@@ -18,7 +18,8 @@ namespace {
 
 /// A stretch of sliding at one speed, or nearly one.
 struct Sliding {
-  std::size_t phase = 0, last_phase = 0;
+  std::size_t phase = 0, last_phase = 0;  ///< the first and the last of it
+  std::size_t longest = 0;                ///< phase, whose speed is that of all
   double begin = 0, end = 0, speed = 0;
   double duration() const { return end - begin; }
   double length() const { return speed * duration(); }
@@ -68,9 +69,12 @@ std::vector<Sliding> slidings_of(const std::vector<LoadPointPhase>& phases, doub
     if (!(phases[i].speed > 0)) continue;
     const bool goes_on = !out.empty() && out.back().last_phase + 1 == i &&
                          std::abs(std::log(phases[i].speed / out.back().speed)) < kNoStep;
-    if (!goes_on) out.push_back({i, i, phases[i].begin, until, phases[i].speed});
-    out.back().last_phase = i;
-    out.back().end = until;
+    if (!goes_on) out.push_back({i, i, i, phases[i].begin, until, phases[i].speed});
+    Sliding& sliding = out.back();
+    if (goes_on && until - phases[i].begin > phases[sliding.longest + 1].begin - phases[sliding.longest].begin)
+      sliding.longest = i, sliding.speed = phases[i].speed;
+    sliding.last_phase = i;
+    sliding.end = until;
   }
   return out;
 }
@@ -128,8 +132,9 @@ void find_steps(const std::vector<Sliding>& slidings, RateStateData& data) {
     step.from = from.end - before / from.speed;
     step.to = to.end - (j + 2 < slidings.size() ? (1 - kPartOfSlidingBehind) * to.duration() : 0);
     data.steps.push_back(step);
-    data.before.push_back(from.phase);
+    data.before.push_back(from.longest);
     data.change.push_back(from.last_phase + 1);
+    data.behind.push_back(to.phase);
   }
 }
 
@@ -218,7 +223,8 @@ RateStateData rate_state_data(const Motion& motion, const RateStateOptions& opti
   data.reference_speed = options.reference_speed > 0 ? options.reference_speed : data.phases.front().speed;
 
   std::vector<VelocityStep> steps = std::exchange(data.steps, {});
-  const std::vector<std::size_t> before = std::exchange(data.before, {}), change = std::exchange(data.change, {});
+  const std::vector<std::size_t> before = std::exchange(data.before, {}), change = std::exchange(data.change, {}),
+                                 behind = std::exchange(data.behind, {});
   for (std::size_t s = 0; s < steps.size(); ++s) {
     VelocityStep& step = steps[s];
     step.from = std::max(step.from, begin);
@@ -252,6 +258,7 @@ RateStateData rate_state_data(const Motion& motion, const RateStateOptions& opti
     data.steps.push_back(step);
     data.before.push_back(before[s]);
     data.change.push_back(change[s]);
+    data.behind.push_back(behind[s]);
     samples.count.assign(samples.time.size(), 1.0);
     samples.scatter.assign(samples.time.size(), 0.0);
     add_values(data, samples, most, data);

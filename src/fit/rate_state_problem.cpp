@@ -1,5 +1,6 @@
 #include "rate_state_problem.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -45,6 +46,7 @@ RateStateProblem::RateStateProblem(const RateStateData& data, StateEvolution evo
   }
   const std::size_t before = data.before[first.value_or(steps_.front())];
   phases_.assign(data.phases.begin() + static_cast<std::ptrdiff_t>(before), data.phases.end());
+  phases_.front().begin = std::min(phases_.front().begin, times_.front());
   for (std::size_t k = 0; k < steps_.size(); ++k) {
     Eigen::MatrixXd basis = design_of(k);
     for (Eigen::Index i = 0; i < basis.rows(); ++i)

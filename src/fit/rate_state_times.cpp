@@ -46,9 +46,8 @@ std::vector<Turn> free_turns(const RateStateData& data) {
   for (std::size_t s = 0; s < data.steps.size(); ++s) {
     const VelocityStep& step = data.steps[s];
     const std::size_t first = data.change[s];
-    std::size_t last = first;
-    while (last < data.phases.size() && data.phases[last].speed != step.after) ++last;
-    if (!(step.slack > 0) || last == data.phases.size()) continue;
+    const std::size_t last = data.behind[s];
+    if (!(step.slack > 0)) continue;
     std::size_t rest = first, on = last;
     while (rest < last && data.phases[rest].speed != 0) ++rest;
     while (on > first && data.phases[on - 1].speed != 0) --on;

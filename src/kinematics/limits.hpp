@@ -387,17 +387,14 @@ inline constexpr double kStandstillPeriods = 3, kStandstillPart = 0.1;
 inline constexpr std::size_t kFewestPeriods = 5;
 
 // ---- the load point of velocity steps and holds
-/// Speed backwards over the fastest, below which it creeps during a hold rather than turns; part of a record in one
-/// direction, from which on that is the test and the rest the way to it and back.
+/// Speed backwards over the fastest, below which it creeps in a hold; part of a record in one direction that is the
+/// test.
 inline constexpr double kCreepOfHold = 1e-3, kLeastOneWay = 0.6;
-/// Errors of the mean of a recorded speed, by which phases differ that are not of its noise alone: its integral is cut
-/// where it wanders most, so that three are not enough.
-inline constexpr double kSpeedsOfNoise = 8;
+/// Errors of the mean of a recorded speed by which phases differ: its integral is cut where it wanders most.
 /// Logarithm of the ratio of speeds that are the same: a rest between them is a hold.
-inline constexpr double kSameSpeed = 0.3;
-/// Time and length, over those of the sliding before and behind, of what a drive does on its way from one speed to the
-/// other: ramps, overshoot, a pause. It is simulated as it was, but makes no step. Larger: short slides between long
-/// ones are lost.
+inline constexpr double kSpeedsOfNoise = 8, kSameSpeed = 0.3;
+/// Time and length, over those of the sliding on either side, of what a drive does between two speeds (overshoot, a
+/// pause): it is simulated as it was, but makes no step. Larger: short slides between long ones are lost.
 inline constexpr double kPassageBeside = 0.1;
 
 }  // namespace tribofit::kinematics
