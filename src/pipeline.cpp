@@ -86,17 +86,19 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
   return out;
 }
 
-/// What was asked for of a fit of sliding laws, and means nothing for velocity steps and holds.
+/// Options of a fit of sliding laws that were given, and mean nothing for velocity steps and holds.
 std::vector<std::string> without_meaning_for_steps(const IdentifyOptions& options) {
-  std::vector<std::string> out;
-  if (options.selection.cycles) out.emplace_back("cycles");
-  if (options.fit.loss != Loss::squares) out.emplace_back("loss");
-  if (options.fit.profile) out.emplace_back("profile");
   const IdentifyOptions usual;
-  const bool laws = options.laws.size() != usual.laws.size() ||
-                    !std::equal(options.laws.begin(), options.laws.end(), usual.laws.begin(),
+  const bool laws = !std::equal(options.laws.begin(), options.laws.end(), usual.laws.begin(), usual.laws.end(),
                                 [](const Law& a, const Law& b) { return to_string(a) == to_string(b); });
-  if (laws) out.emplace_back("law");
+  std::vector<std::string> out;
+  if (laws) out.emplace_back("--law");
+  if (options.selection.cycles) out.emplace_back("--cycles");
+  if (options.fit.loss != usual.fit.loss) out.emplace_back("--loss");
+  if (options.fit.profile) out.emplace_back("--profile");
+  if (options.fit.starts != usual.fit.starts) out.emplace_back("--starts");
+  if (options.fit.folds != usual.fit.folds) out.emplace_back("--folds");
+  if (options.fit.protocol != usual.fit.protocol) out.emplace_back("--protocol");
   return out;
 }
 
@@ -107,10 +109,8 @@ void fit_driven(const IdentifyOptions& options, Identification& trace) {
   if (!trace.analysed) return;
   const std::vector<std::string> unused = without_meaning_for_steps(options);
   if (!unused.empty())
-    trace.warnings.push_back(fmt::format(
-        "{} asked for, but velocity steps and holds are fitted by rate and state, over all steps and by least squares: "
-        "not used",
-        fmt::join(unused, ", ")));
+    trace.warnings.push_back(
+        fmt::format("velocity steps and holds are fitted by rate and state, without {}", fmt::join(unused, ", ")));
   RateStateOptions own = options.rate_state;
   own.threads = options.threads;
   own.excluded = options.selection.excluded;

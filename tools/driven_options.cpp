@@ -45,7 +45,7 @@ const Named* find_parameter(std::string_view name) {
 /// A bare number would be one of metres: a million times what is meant.
 void require_unit(std::string_view text, const std::string& option, const char* example) {
   const std::string_view spelled = trimmed(text);
-  if (spelled.find_first_not_of("+-.0123456789eE ") == std::string_view::npos)
+  if (!spelled.empty() && spelled.find_first_not_of("+-.0123456789eE ") == std::string_view::npos)
     throw UsageError(option + ": '" + std::string(spelled) + "' has no unit; give it, as in " + example);
 }
 
@@ -138,8 +138,9 @@ std::vector<LoadPointPhase> phases_from(const std::string& text, const std::stri
       throw UsageError(option + ": '" + part + "' is not TIME:SPEED, as in 0s:2um/s,60s:10um/s");
     const double begin = stated_value(part.substr(0, colon), Quantity::time, option, "s");
     const std::string speed(trimmed(part.substr(colon + 1)));
-    if (speed != "0") require_unit(speed, option, "0s:2um/s,60s:10um/s");
-    const double value = speed == "0" ? 0 : stated_value(speed, Quantity::velocity, option);
+    const bool rests = !speed.empty() && speed.find_first_not_of("0.") == std::string::npos;
+    if (!rests) require_unit(speed, option, "0s:2um/s,60s:10um/s");
+    const double value = rests ? 0 : stated_value(speed, Quantity::velocity, option);
     if (!phases.empty() && !(begin > phases.back().begin))
       throw UsageError(option + ": '" + part + "' does not come after the time before it");
     if (!(value >= 0)) throw UsageError(option + ": '" + part + "' goes backwards; give speeds of at least 0");

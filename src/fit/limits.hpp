@@ -176,10 +176,8 @@ inline constexpr double kPartOfSlidingBehind = 0.7, kPartOfSlidingBefore = 0.3;
 /// Mean square that a fit of all steps leaves, over that of the first step alone, from which on it has not found its
 /// minimum: near the critical stiffness friction swings, and few starts lead there.
 inline constexpr double kFarFromMinimum = 4;
-/// Time of one stair of a ramp, and of the whole ramp, over the shorter sliding beside it: what takes longer is sliding
-/// of its own. Slides of one length or of one time each, up or down, are never so short. Logarithm of the ratio of
-/// speeds between which there is no step: a drive that still settles.
-inline constexpr double kStairBeside = 0.2, kRampBeside = 2, kNoStep = 0.05;
+/// Logarithm of the ratio of speeds between which there is no step: a drive that still settles.
+inline constexpr double kNoStep = 0.05;
 /// Samples of a step, without which it shows nothing: a constant, a line and four parameters are asked of it.
 inline constexpr std::size_t kFewestBeforeStep = 5, kFewestBehindStep = 10;
 /// Values that a step is fitted to: neighbours are put together where there are more, which moves the parameters by

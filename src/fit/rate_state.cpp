@@ -49,8 +49,10 @@ class Analysis {
     }
     for (std::size_t s = 0; s < out_.steps.size(); ++s)
       out_.steps[s].time_std_error = chosen_.best_law().fit.time_std_error[s];
-    out_.answer_p_value =
-        p_value_of_no_answer(chosen_.problem(chosen_.best), chosen_.best_law().solution, chosen_.best_law().fit);
+    for (const std::size_t held : chosen_.at_limit) out_.steps[held].time_std_error = std::nan("");
+    if (chosen_.at_limit.empty())
+      out_.answer_p_value =
+          p_value_of_no_answer(chosen_.problem(chosen_.best), chosen_.best_law().solution, chosen_.best_law().fit);
     hold_out();
     compare_laws();
     if (options_.each_step && all().size() > 1) fit_each();
@@ -71,7 +73,10 @@ class Analysis {
     chosen_ = with(options_.states != 0 ? options_.states : names_second ? 2 : 1);
     if (options_.states != 0 || names_second) return;
     if (chosen_.fitted() && !(chosen_.best_law().fit.noise_time > 0)) return;  // noise is all it leaves
-    if (chosen_.at_limit) return;  // what steps at wrong times leave is no state
+    if (!chosen_.at_limit.empty()) {  // what steps at wrong times leave is no state
+      out_.messages.emplace_back("a second state variable was not looked for, as times of steps are not known");
+      return;
+    }
     StepsTogether two = with(2);
     if (!two.fitted()) return;
     if (chosen_.fitted()) {

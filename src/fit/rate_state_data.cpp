@@ -21,22 +21,10 @@ struct Sliding {
   std::size_t phase = 0, last_phase = 0;  ///< the first and the last of it
   std::size_t longest = 0;                ///< phase, whose speed is that of all
   double begin = 0, end = 0, speed = 0;
+  bool behind_rest = false;  ///< and not behind another sliding
   double duration() const { return end - begin; }
   double length() const { return speed * duration(); }
 };
-
-/// Whether a drive runs up or down from one sliding to the other: a ramp is a flight of small stairs in the record, up
-/// or down alone, each of them short beside both.
-bool is_ramp(std::span<const Sliding> stairs, const Sliding& before, const Sliding& behind) {
-  const double way = behind.speed - before.speed, shorter = std::min(before.duration(), behind.duration());
-  double speed = before.speed;
-  for (const Sliding& stair : stairs) {
-    if ((stair.speed - speed) * way <= 0 || stair.duration() > kStairBeside * shorter) return false;
-    speed = stair.speed;
-  }
-  return stairs.size() > 1 && (behind.speed - speed) * way > 0 &&
-         stairs.back().end - stairs.front().begin < kRampBeside * shorter;
-}
 
 /// Whether what lies between two slidings is short beside both, in time and in length.
 bool is_short(std::span<const Sliding> between, const Sliding& before, const Sliding& behind) {
@@ -51,25 +39,25 @@ bool is_short(std::span<const Sliding> between, const Sliding& before, const Sli
 std::optional<std::size_t> end_of_passage(const std::vector<Sliding>& all, std::size_t first) {
   const Sliding& before = all[first - 1];
   std::optional<std::size_t> last;
-  for (std::size_t i = first; i + 1 < all.size() && all[i].phase == all[i - 1].last_phase + 1; ++i) {
-    if (all[i].end - all[first].begin > kRampBeside * before.duration()) break;
-    const auto between = std::span(all).subspan(first, i + 1 - first);
-    if (all[i + 1].phase == all[i].last_phase + 1 &&
-        (is_short(between, before, all[i + 1]) || is_ramp(between, before, all[i + 1])))
-      last = i;
+  for (std::size_t i = first; i + 1 < all.size() && !all[i].behind_rest; ++i) {
+    if (all[i].end - all[first].begin > before.duration()) break;
+    if (!all[i + 1].behind_rest && is_short(std::span(all).subspan(first, i + 1 - first), before, all[i + 1])) last = i;
   }
   return last;
 }
 
-/// Sliding between rests; neighbours of nearly the same speed are one.
+/// Sliding between rests and ramps; neighbours of nearly the same speed are one.
 std::vector<Sliding> slidings_of(const std::vector<LoadPointPhase>& phases, double end) {
   std::vector<Sliding> out;
+  bool behind_rest = false;
   for (std::size_t i = 0; i < phases.size(); ++i) {
     const double until = i + 1 < phases.size() ? phases[i + 1].begin : end;
-    if (!(phases[i].speed > 0)) continue;
+    behind_rest = behind_rest || !(phases[i].speed > 0);
+    if (!(phases[i].speed > 0) || phases[i].on_ramp) continue;
     const bool goes_on = !out.empty() && out.back().last_phase + 1 == i &&
                          std::abs(std::log(phases[i].speed / out.back().speed)) < kNoStep;
-    if (!goes_on) out.push_back({i, i, i, phases[i].begin, until, phases[i].speed});
+    if (!goes_on) out.push_back({i, i, i, phases[i].begin, until, phases[i].speed, behind_rest});
+    behind_rest = false;
     Sliding& sliding = out.back();
     if (goes_on && until - phases[i].begin > phases[sliding.longest + 1].begin - phases[sliding.longest].begin)
       sliding.longest = i, sliding.speed = phases[i].speed;
@@ -113,8 +101,9 @@ std::vector<LoadPointPhase> phases_within(const std::vector<LoadPointPhase>& all
   return out;
 }
 
-/// Steps between neighbouring stretches of sliding, with the times between which their samples lie.
-void find_steps(const std::vector<Sliding>& slidings, RateStateData& data) {
+/// Steps between neighbouring stretches of sliding, with the times between which their samples lie. starts: the record
+/// begins at rest.
+void find_steps(const std::vector<Sliding>& slidings, bool starts, RateStateData& data) {
   for (std::size_t j = 0; j + 1 < slidings.size(); ++j) {
     const Sliding &from = slidings[j], &to = slidings[j + 1];
     VelocityStep step;
@@ -126,14 +115,15 @@ void find_steps(const std::vector<Sliding>& slidings, RateStateData& data) {
     // A drive that changes its speed may pause for it.
     step.hold = same_speed || rest > kinematics::kPassageBeside * std::min(from.duration(), to.duration()) ? rest : 0;
     step.displacement = data.displacement_at(step.time);
-    const double own = j == 0 ? 1 : 1 - kPartOfSlidingBehind;
+    // What was recorded from its begin on slides steadily; behind a run-up or a rest it has yet to.
+    const double own = j == 0 && from.phase == 0 && !starts ? 1 : 1 - kPartOfSlidingBehind;
     const double as_long = kPartOfSlidingBefore * std::min(from.duration(), to.duration()) * from.speed;
     const double before = std::min(own * from.length(), std::max(as_long, to.length()));
     step.from = from.end - before / from.speed;
     step.to = to.end - (j + 2 < slidings.size() ? (1 - kPartOfSlidingBehind) * to.duration() : 0);
     data.steps.push_back(step);
     data.before.push_back(from.longest);
-    data.change.push_back(from.last_phase + 1);
+    data.leaving.push_back(from.last_phase + 1);
     data.behind.push_back(to.phase);
   }
 }
@@ -219,11 +209,13 @@ RateStateData rate_state_data(const Motion& motion, const RateStateOptions& opti
   if (data.phases.empty()) return data;
   while (data.phases.size() > 1 && data.phases.back().begin >= end) data.phases.pop_back();
   data.set_phase_displacements();
-  find_steps(lasting(slidings_of(data.phases, end)), data);
-  data.reference_speed = options.reference_speed > 0 ? options.reference_speed : data.phases.front().speed;
+  find_steps(lasting(slidings_of(data.phases, end)), data.phases.front().begin > begin, data);
+  data.reference_speed = options.reference_speed > 0 ? options.reference_speed
+                         : data.steps.empty()        ? data.phases.front().speed
+                                                     : data.steps.front().before;
 
   std::vector<VelocityStep> steps = std::exchange(data.steps, {});
-  const std::vector<std::size_t> before = std::exchange(data.before, {}), change = std::exchange(data.change, {}),
+  const std::vector<std::size_t> before = std::exchange(data.before, {}), leaving = std::exchange(data.leaving, {}),
                                  behind = std::exchange(data.behind, {});
   for (std::size_t s = 0; s < steps.size(); ++s) {
     VelocityStep& step = steps[s];
@@ -257,7 +249,7 @@ RateStateData rate_state_data(const Motion& motion, const RateStateOptions& opti
     data.begins.push_back(data.time.size());
     data.steps.push_back(step);
     data.before.push_back(before[s]);
-    data.change.push_back(change[s]);
+    data.leaving.push_back(leaving[s]);
     data.behind.push_back(behind[s]);
     samples.count.assign(samples.time.size(), 1.0);
     samples.scatter.assign(samples.time.size(), 0.0);

@@ -15,10 +15,10 @@ struct RateStateData {
   std::vector<LoadPointPhase> phases;
   std::vector<double> phase_displacement;  ///< of the load point at the begin of each phase [m]
   std::vector<VelocityStep> steps;
-  std::vector<std::size_t> before;  ///< of each step: the phase of sliding before it, or the longest of several
-  std::vector<std::size_t> change;  ///< the first phase that is not of that sliding
-  std::vector<std::size_t> behind;  ///< the first phase of sliding behind it
-  double reference_speed = 0;       ///< v0 [m/s]
+  std::vector<std::size_t> before;   ///< of each step: the phase of sliding before it, or the longest of several
+  std::vector<std::size_t> leaving;  ///< the first phase that is not of that sliding
+  std::vector<std::size_t> behind;   ///< the first phase of sliding behind it
+  double reference_speed = 0;        ///< v0 [m/s]
 
   /// Values, each the mean of `count` samples, in order of time; those of step s begin at begins[s]. scatter: squares
   /// of the samples about their mean, summed.

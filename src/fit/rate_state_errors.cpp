@@ -69,7 +69,7 @@ void set_errors(const RateStateUnknowns& unknowns, const std::vector<double>& p,
 /// Of the times of steps that were fitted: their columns lie behind the free unknowns.
 void set_errors_of_times(const FitErrors& found, const RateStateProblem& problem, const Errors& errors,
                          std::size_t free, RateStateFit& fit) {
-  fit.time_std_error.assign(problem.steps().size(), 0.0);
+  fit.time_std_error.assign(problem.steps().size(), kUnknown);
   for (std::size_t k = 0; k < found.turns().size(); ++k) {
     if (found.turns()[k].ends_hold) continue;
     const auto row = static_cast<Eigen::Index>(free + k);
@@ -131,6 +131,7 @@ RateStateFit fit_from(const RateStateProblem& problem, const RateStateUnknowns& 
                       const RateStateSolution& solution) {
   RateStateFit fit;
   fit.evolution = problem.evolution();
+  fit.states = problem.states();
   if (!solution.found) {
     fit.messages.push_back("the fit failed: " + solution.message);
     return fit;
@@ -154,7 +155,7 @@ RateStateFit fit_from(const RateStateProblem& problem, const RateStateUnknowns& 
   const Errors errors = found.errors_of(influence, noise);
   set_errors(unknowns, solution.p, free, errors, fit);
   set_errors_of_times(found, problem, errors, free.size(), fit);
-  set_stability(problem.states(), solution.p, fit.degrees_of_freedom, fit);
+  set_stability(solution.p, fit.degrees_of_freedom, fit);
   set_correlations(fit);
   set_own_values(found, problem.steps().size(), fitted, influence, noise, fit);
   say_excess(found, adapting_distance(problem.data(), problem.states(), fit), fitted, fit);
@@ -163,12 +164,17 @@ RateStateFit fit_from(const RateStateProblem& problem, const RateStateUnknowns& 
 
 double p_value_of_no_answer(const RateStateProblem& problem, const RateStateSolution& solution,
                             const RateStateFit& fit) {
+  const bool is_noise = fit.noise_white > 0 && !fit.lacks.value_or(false) &&
+                        !(fit.noise_time > 0 && fit.noise_slow > kMuchWander * fit.noise_white);
+  const auto free = std::count_if(fit.parameters.begin(), fit.parameters.end(),
+                                  [](const FitParameter& p) { return p.std_error > 0 && !p.at_bound; });
+  if (!is_noise || free == 0) return kUnknown;
   const FitErrors found(problem, solution.p);
-  if (!found.valid() || !(fit.noise_white > 0)) return kUnknown;
+  if (!found.valid()) return kUnknown;
   const WanderingNoise noise = {fit.noise_white, fit.noise_slow, fit.noise_time};
-  const auto values = static_cast<double>(problem.parameter_count());
+  const auto values = static_cast<double>(free) + static_cast<double>(found.turns().size());
   const double more = found.whitened_without_answer(noise) - found.whitened(noise);
-  return f_p_value(std::max(0.0, more) / values, values, fit.degrees_of_freedom);
+  return more > 0 ? f_p_value(more / values, values, kLargeFreedom) : kUnknown;
 }
 
 double log_likelihood_below(const RateStateProblem& best, const RateStateSolution& best_solution,

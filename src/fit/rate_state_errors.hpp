@@ -10,8 +10,8 @@ namespace tribofit::fit {
 RateStateFit fit_from(const RateStateProblem& problem, const RateStateUnknowns& unknowns,
                       const RateStateSolution& solution);
 
-/// Nominal chance that noise as the fit has it, and no answer to the steps, leaves friction as far from steady as it
-/// is; NaN where it cannot be computed.
+/// Nominal chance that noise alone, as the fit has it, does what the fitted answer to the steps does; NaN where it
+/// cannot be computed, or where what is left is no noise: a law that fails is no answer that is missing.
 double p_value_of_no_answer(const RateStateProblem& problem, const RateStateSolution& solution,
                             const RateStateFit& fit);
 
@@ -22,7 +22,7 @@ double log_likelihood_below(const RateStateProblem& best, const RateStateSolutio
                             const RateStateFit& fit);
 
 /// a - b, and whether sliding is stable on this machine, from the values and their covariance.
-void set_stability(std::size_t states, const std::vector<double>& p, double freedom, RateStateFit& fit);
+void set_stability(const std::vector<double>& p, double freedom, RateStateFit& fit);
 void set_correlations(RateStateFit& fit);
 
 /// What a person is told of it.

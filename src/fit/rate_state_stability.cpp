@@ -11,15 +11,10 @@ namespace tribofit::fit {
 
 namespace {
 
-/// k_c, and k over it with the interval that errors of ln(k/k_c) make. One state: where friction falls beyond doubt.
-void set_critical_stiffness(std::size_t states, const std::vector<double>& p, double quantile,
-                            const Eigen::Map<const RowMatrix>& covariance, RateStateFit& fit) {
-  const auto logarithm = [&](const std::vector<double>& at) {
-    const RateStateParameters<double> found = parameters_from(at.data(), states);
-    return std::log(found.stiffness / critical_stiffness(found, states));
-  };
-  const double value = logarithm(p);
-  if (!std::isfinite(value) || (states == 1 && !(fit.rate_dependence_upper95 < 0))) return;
+/// By how much a logarithm is off within its 95 % interval; not finite where that reaches where there is none.
+template <class F>
+double half_width(const F& logarithm, const std::vector<double>& p, double quantile,
+                  const Eigen::Map<const RowMatrix>& covariance) {
   Eigen::VectorXd gradient(static_cast<Eigen::Index>(p.size()));
   for (std::size_t i = 0; i < p.size(); ++i) {
     constexpr double kPart = 1e-5;
@@ -28,28 +23,44 @@ void set_critical_stiffness(std::size_t states, const std::vector<double>& p, do
     up[i] += h, down[i] -= h;
     gradient(static_cast<Eigen::Index>(i)) = (logarithm(up) - logarithm(down)) / (2 * h);
   }
-  const double half = quantile * std::sqrt(gradient.dot(covariance * gradient));
-  if (!std::isfinite(half)) return;
-  fit.critical_stiffness = critical_stiffness(parameters_from(p.data(), states), states);
-  fit.stiffness_ratio = std::exp(value);
-  fit.stiffness_ratio_lower95 = std::exp(value - half);
-  fit.stiffness_ratio_upper95 = std::exp(value + half);
+  return quantile * std::sqrt(gradient.dot(covariance * gradient));
+}
+
+/// k_c, and k over it with the interval that errors of ln(k/k_c) make: where friction falls beyond doubt, and where
+/// that of two states rises and k_c is known to a factor.
+void set_critical_stiffness(const std::vector<double>& p, double quantile,
+                            const Eigen::Map<const RowMatrix>& covariance, RateStateFit& fit) {
+  const bool falls = fit.rate_dependence_upper95 < 0;
+  const bool rises = fit.rate_dependence_lower95 > 0;
+  if (!falls && !(rises && fit.states > 1)) return;
+  const auto critical = [&](const std::vector<double>& at) {
+    return std::log(critical_stiffness(parameters_from(at.data(), fit.states), fit.states));
+  };
+  const auto ratio = [&](const std::vector<double>& at) {
+    return std::log(parameters_from(at.data(), fit.states).stiffness) - critical(at);
+  };
+  const double half = half_width(ratio, p, quantile, covariance);
+  if (!std::isfinite(half) || (rises && !(half_width(critical, p, quantile, covariance) < 1))) return;
+  fit.critical_stiffness = std::exp(critical(p));
+  fit.stiffness_ratio = std::exp(ratio(p));
+  fit.stiffness_ratio_lower95 = fit.stiffness_ratio * std::exp(-half);
+  fit.stiffness_ratio_upper95 = fit.stiffness_ratio * std::exp(half);
 }
 
 }  // namespace
 
-void set_stability(std::size_t states, const std::vector<double>& p, double freedom, RateStateFit& fit) {
+void set_stability(const std::vector<double>& p, double freedom, RateStateFit& fit) {
   constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
   const auto n = static_cast<Eigen::Index>(p.size());
   const Eigen::Map<const RowMatrix> covariance(fit.covariance.data(), n, n);
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
   gradient(0) = 1;
   double value = p[0];
-  for (std::size_t i = 0; i < states; ++i) {
+  for (std::size_t i = 0; i < fit.states; ++i) {
     gradient(static_cast<Eigen::Index>(1 + 2 * i)) = -1;
     value -= p[1 + 2 * i];
   }
-  for (std::size_t i = 0; i < 1 + states; ++i) {
+  for (std::size_t i = 0; i < 1 + fit.states; ++i) {
     if (!fit.parameters[i == 0 ? 0 : 2 * i - 1].at_bound) continue;
     fit.rate_dependence = {kNotKnown, kNotKnown, freedom};
     fit.rate_dependence_lower95 = fit.rate_dependence_upper95 = kNotKnown;
@@ -59,7 +70,7 @@ void set_stability(std::size_t states, const std::vector<double>& p, double free
   fit.rate_dependence = {value, std::sqrt(gradient.dot(covariance * gradient)), freedom};
   fit.rate_dependence_lower95 = value - quantile * fit.rate_dependence.std_error;
   fit.rate_dependence_upper95 = value + quantile * fit.rate_dependence.std_error;
-  set_critical_stiffness(states, p, quantile, covariance, fit);
+  set_critical_stiffness(p, quantile, covariance, fit);
 }
 
 void set_correlations(RateStateFit& fit) {

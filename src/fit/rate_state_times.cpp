@@ -45,7 +45,7 @@ std::vector<Turn> free_turns(const RateStateData& data) {
   std::vector<Turn> out;
   for (std::size_t s = 0; s < data.steps.size(); ++s) {
     const VelocityStep& step = data.steps[s];
-    const std::size_t first = data.change[s];
+    const std::size_t first = data.leaving[s];
     const std::size_t last = data.behind[s];
     if (!(step.slack > 0)) continue;
     std::size_t rest = first, on = last;
@@ -119,7 +119,7 @@ MovedSteps refine_step_times(RateStateData& data, StateEvolution evolution, std:
     const VelocityStep& step = data.steps[turn.step];
     const double by = std::abs(data.phases[turn.first].begin - stated[turn.first].begin);
     out.largest = std::max(out.largest, by);
-    if (by > kAtLimit * step.slack) out.at_limit.push_back(step.time);
+    if (by > kAtLimit * step.slack) out.at_limit.push_back(turn.step);
   }
   return out;
 }

@@ -19,8 +19,8 @@ std::vector<Turn> free_turns(const RateStateData& data);
 Eigen::VectorXd response_by_time(const RateStateProblem& problem, const std::vector<double>& p, const Turn& turn);
 
 struct MovedSteps {
-  double largest = 0;            ///< [s]
-  std::vector<double> at_limit;  ///< times of steps that what is known of them held [s]
+  double largest = 0;                 ///< [s]
+  std::vector<std::size_t> at_limit;  ///< steps that what is known of their times held
 };
 
 /// Moves the steps to the times at which the response fits best, within what is known of them (VelocityStep::slack) and

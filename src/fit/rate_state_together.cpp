@@ -105,12 +105,12 @@ class Together {
       out_.messages.push_back(
           fmt::format("friction answers the steps at other times than {}: they were moved by up to {:.3g} s",
                       kKnown.at(static_cast<std::size_t>(source_)), moves.largest));
-    out_.at_limit = !moves.at_limit.empty();
-    if (!out_.at_limit) return;
+    out_.at_limit = moves.at_limit;
+    if (moves.at_limit.empty()) return;
     out_.messages.push_back(fmt::format(
         "the step at {:.6g} s was moved as far as its time may be wrong, and friction may answer it later or "
         "earlier still: the values are not to be trusted; check the column or the times of the load point",
-        moves.at_limit.front()));
+        out_.data.steps[moves.at_limit.front()].time));
   }
 
   bool is_beyond_chance(const RateStateData& moved, StateEvolution evolution, const RateStateSolution& before,

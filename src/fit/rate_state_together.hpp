@@ -21,8 +21,8 @@ struct StepsTogether {
   RateStateUnknowns unknowns;
   Detrend detrend = Detrend::none;
   std::vector<LawFit> laws;
-  std::size_t best = 0;   ///< in `laws`
-  bool at_limit = false;  ///< of what is known of the time of a step
+  std::size_t best = 0;               ///< in `laws`
+  std::vector<std::size_t> at_limit;  ///< steps whose times end at the limit of what is known of them
   std::vector<std::string> messages;
 
   const LawFit& best_law() const { return laws[best]; }

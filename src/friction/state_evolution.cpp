@@ -47,9 +47,9 @@ std::vector<std::string> state_evolution_names() {
 double critical_stiffness(const RateStateParameters<double>& parameters, std::size_t states) {
   const auto& [a, b, distance, stiffness] = parameters;
   if (states == 1) return critical_stiffness(a, b[0], distance[0]);
-  // With rates in units of the speed, l_i = 1/D_i, disturbances grow as the roots of a s^3 + (k - p) s^2 + (k (l_1 +
-  // l_2)
-  // - q) s + k l_1 l_2; at the critical stiffness the product of the middle ones is that of the outer ones.
+  // In units of the speed, and with l = 1/D, disturbances grow as the roots of
+  // a s^3 + (k - p) s^2 + (k (l_1 + l_2) - q) s + k l_1 l_2; at the critical stiffness the product of the middle
+  // coefficients is that of the outer ones.
   const double first = 1 / distance[0], second = 1 / distance[1], sum = first + second, product = first * second;
   const double p = b[0] * first + b[1] * second - a * sum, q = (b[0] + b[1] - a) * product;
   const double half = 0.5 * (q + p * sum + a * product) / sum, square = half * half - p * q / sum;

@@ -29,7 +29,7 @@ std::vector<double> displacement_from(const std::vector<double>& time, const std
 std::vector<LoadPointPhase> phases_of(const std::vector<double>& time, const std::vector<double>& displacement) {
   std::vector<LoadPointPhase> out;
   for (const LinePiece& piece : piecewise_lines(time, displacement))
-    out.push_back({piece.begin, piece.is_level ? 0 : piece.slope});
+    out.push_back({piece.begin, piece.is_level ? 0 : piece.slope, piece.on_ramp && !piece.is_level});
   return out;
 }
 
@@ -68,6 +68,7 @@ std::vector<LoadPointPhase> without_corners_of_noise(const std::vector<double>& 
     kept.sum += all[faintest].sum;
     kept.count += all[faintest].count;
     kept.phase.speed = kept.mean();
+    kept.phase.on_ramp = kept.phase.on_ramp && all[faintest].phase.on_ramp;
     all.erase(all.begin() + static_cast<std::ptrdiff_t>(faintest));
   }
   std::vector<LoadPointPhase> out;

@@ -170,6 +170,7 @@ void write_steps(WholeFolder& folder, const RateStateAnalysis& analysis) {
   std::vector<CsvColumn<std::size_t>> columns = {
       {"step_number", [](std::size_t s) { return s + 1; }},
       {"time_s", [&](std::size_t s) { return analysis.steps[s].time; }},
+      {"time_std_error_s", [&](std::size_t s) { return analysis.steps[s].time_std_error; }},
       {"recorded_time_s", [&](std::size_t s) { return analysis.steps[s].recorded; }},
       {"from_um_s", [&](std::size_t s) { return analysis.steps[s].before / kMicron; }},
       {"to_um_s", [&](std::size_t s) { return analysis.steps[s].after / kMicron; }},

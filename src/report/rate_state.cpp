@@ -43,7 +43,7 @@ std::vector<std::string> row_of(const std::string& name, double value, double er
 }
 
 std::string critical_stiffness_text(const RateStateFit& fit) {
-  return fit.parameters.size() > 4 ? "k_c of two states" : "k_c = (b - a)/D_c";
+  return fit.states > 1 ? "k_c of two states" : "k_c = (b - a)/D_c";
 }
 
 ReportTable parameter_table_of(const RateStateFit& fit, const Motion& motion) {
@@ -74,7 +74,7 @@ void add_law(const RateStateAnalysis& analysis, std::size_t k, const Motion& mot
   const bool best = k == analysis.best && analysis.fits.size() > 1;
   section.heading(fmt::format("{} law, {}{}", capitalised(std::string(to_string(fit.evolution))),
                               of_steps(fit, analysis.steps.size()), best ? " (best)" : ""));
-  const bool two = fit.parameters.size() > 4;
+  const bool two = fit.states > 1;
   section.soft(fmt::format("mu = mu_0 + a ln(v/v0) + b ln(v0 theta/D_c){}, {}, dmu/dt = k (v_lp - v)",
                            two ? " + b_2 ln(v0 theta_2/D_c2)" : "", equation_of(fit.evolution)));
   if (!fit.converged) {
@@ -108,7 +108,7 @@ void add_states(const RateStateAnalysis& analysis, ReportSection& section) {
 ReportTable steps_table(const RateStateAnalysis& analysis) {
   ReportTable table("Steps");
   const bool moved = std::any_of(analysis.steps.begin(), analysis.steps.end(),
-                                 [](const VelocityStep& step) { return step.time_std_error > 0; });
+                                 [](const VelocityStep& step) { return step.time != step.recorded; });
   table.numbers({"no."}).numbers({"time [s]"});
   if (moved) table.numbers({"recorded [s]"});
   table.numbers({"from [um/s]", "to [um/s]"})
@@ -129,7 +129,8 @@ ReportTable steps_table(const RateStateAnalysis& analysis) {
         trend = with_error(fit->trend[s].value / unit, fit->trend[s].std_error / unit) + (over_time ? " 1/s" : " 1/mm");
     }
     std::vector<std::string> row = {std::to_string(s + 1)};
-    row.push_back(step.time_std_error > 0 ? with_error(step.time, step.time_std_error) : significant(step.time, 6));
+    row.push_back(std::isfinite(step.time_std_error) ? with_error(step.time, step.time_std_error)
+                                                     : significant(step.time, 6));
     if (moved) row.push_back(significant(step.recorded, 6));
     row.insert(row.end(), {significant(step.before / kMicrometre, 4), significant(step.after / kMicrometre, 4),
                            step.hold > 0 ? significant(step.hold, 4) : "", grouped(step.samples),
@@ -202,15 +203,16 @@ void add_which_law(const RateStateAnalysis& analysis, ReportSection& section) {
                     to_string(best.evolution), figures));
     return;
   }
-  constexpr double kTold = 0.05;
-  const bool told = analysis.law_p_value < kTold;
+  constexpr double kDistinguished = 0.05;
+  const bool distinguished = analysis.law_p_value < kDistinguished;
   section.plain(
-      told ? fmt::format("The {} law describes these steps better than the {} law ({}, {}).", to_string(best.evolution),
-                         to_string(other.evolution), figures, p_value)
-           : fmt::format("These data do not distinguish the {} law from the {} law ({}, {}). Steps of a factor "
-                         "of ten or more, up and down, would.",
-                         to_string(best.evolution), to_string(other.evolution), figures, p_value));
-  if (!told && std::isfinite(other.rate_dependence.value))
+      distinguished
+          ? fmt::format("The {} law describes these steps better than the {} law ({}, {}).", to_string(best.evolution),
+                        to_string(other.evolution), figures, p_value)
+          : fmt::format("These data do not distinguish the {} law from the {} law ({}, {}). Steps of a factor "
+                        "of ten or more, up and down, would.",
+                        to_string(best.evolution), to_string(other.evolution), figures, p_value));
+  if (!distinguished && std::isfinite(other.rate_dependence.value))
     section.plain(fmt::format("The result below is that of the {} law; by the {} law a - b = {}.",
                               to_string(best.evolution), to_string(other.evolution),
                               with_error(other.rate_dependence.value, other.rate_dependence.std_error)));
@@ -275,8 +277,9 @@ Facts load_point_facts(const Motion& motion, const RateStateAnalysis* analysis) 
 
 void add_rate_state(const RateStateAnalysis& analysis, const Motion& motion, ReportSection& section) {
   section.add(steps_table(analysis));
+  if (analysis.fitted() && !analysis.is_answered()) section.warning(verdict_on(analysis));
   for (std::size_t k = 0; k < analysis.fits.size(); ++k) add_law(analysis, k, motion, section);
-  if (!analysis.fitted()) return;
+  if (!analysis.is_answered()) return;
   add_which_law(analysis, section);
   add_states(analysis, section);
   section.add(each_table(analysis, motion));
@@ -303,9 +306,10 @@ std::string verdict_on(const RateStateAnalysis& analysis) {
     return "Whether steady friction rises or falls with speed is not known from these data: a or b ended at a bound.";
   const std::string rate = with_error(fit.rate_dependence.value, fit.rate_dependence.std_error);
   if (fit.rate_dependence_lower95 > 0 && !std::isfinite(fit.stiffness_ratio))
-    return fmt::format("Steady friction rises with speed (a - b = {}): sliding is stable on any machine, however soft.",
-                       rate);
-  const bool rises = fit.rate_dependence_lower95 > 0;  // and the quick one of two states alone falls
+    return fmt::format(
+        "Steady friction rises with speed (a - b = {}): sliding is stable on any machine{}.", rate,
+        fit.states > 1 ? ", but perhaps a soft one, where the quicker state alone lets it fall" : ", however soft");
+  const bool rises = fit.rate_dependence_lower95 > 0;  // while the quick one of two states alone falls
   if (!rises && !(fit.rate_dependence_upper95 < 0))
     return fmt::format("Whether steady friction rises or falls with speed is not known from these data (a - b = {}).",
                        rate);
@@ -314,14 +318,15 @@ std::string verdict_on(const RateStateAnalysis& analysis) {
   const FitParameter& distance = fit.parameters[2];
   text += fmt::format(
       "{} sliding is unstable, and sticks and slips, on a machine softer than {}{} {} 1/um per normal force",
-      rises ? ", and yet" : ":", critical_stiffness_text(fit), fit.parameters.size() > 4 ? "," : " =",
+      rises ? ", and yet" : ":", critical_stiffness_text(fit), fit.states > 1 ? "," : " =",
       significant(fit.critical_stiffness * kMicrometre, 3));
   if (!fit.parameters.back().determined || !distance.determined) return text + "; k of this one is not resolved.";
   const std::string ratio = significant(fit.stiffness_ratio, 3);
   if (fit.stiffness_ratio_lower95 > 1)
     return text + fmt::format(". This machine is {} times as stiff: it slides steadily.", ratio);
   if (fit.stiffness_ratio_upper95 < 1)
-    return text + fmt::format(". This machine has {} of that: it will stick and slip (--kind stick-slip).", ratio);
+    return text + fmt::format(". This machine has {} of that: it {} stick and slip (--kind stick-slip).", ratio,
+                              rises ? "may" : "will");
   return text +
          fmt::format(". This machine has {} of that, which the data do not tell from the critical stiffness.", ratio);
 }

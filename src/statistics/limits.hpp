@@ -87,6 +87,10 @@ inline constexpr double kLeastChangeOfSlope = 0.15;
 /// squares of the noise, where noise alone saves twenty), and way of a level over the noise; slope of a level over
 /// those beside it, which is below any step that people make.
 inline constexpr double kCornerOfNoise = 8, kLevelBeside = 2e-3;
+/// The same of a line that may be part of a ramp: what it would hide, over what a corner must save. Smaller: ramps that
+/// bend are cut into speeds that nobody set; larger: short slides at a speed between two others are lost. Errors of a
+/// slope by which it may fall behind the one before it.
+inline constexpr double kCornersOfRamp = 10, kErrorsOfSlope = 3;
 /// Samples of a piece, and those beside a corner that do not count for its lines, as a drive takes time to change.
 inline constexpr std::size_t kFewestOfPiece = 4, kMarginOfPiece = 5;
 /// Samples among which corners are looked for first: without a corner the work grows with their square.

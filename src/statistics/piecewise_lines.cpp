@@ -130,8 +130,8 @@ std::vector<std::size_t> corners_of(std::span<const double> t, std::span<const d
 
 struct Stretch {
   std::size_t begin = 0, end = 0;
-  GrowingLine line;     ///< through its inner samples
-  bool is_way = false;  ///< from one slope to another
+  GrowingLine line;      ///< through its inner samples
+  bool on_ramp = false;  ///< see LinePiece
 };
 
 Stretch stretch_of(std::span<const double> t, std::span<const double> x, std::size_t begin, std::size_t end) {
@@ -200,34 +200,76 @@ std::vector<Stretch> parts_of(std::span<const double> t, std::span<const double>
   return out;
 }
 
-/// On the way from one slope to another, as of a drive that runs up, every corner stays that noise has not made; so do
-/// those by which a stretch goes over into such a way.
-std::vector<Stretch> with_ways(std::span<const double> t, std::span<const double> x, const std::vector<Stretch>& fine,
-                               const std::vector<Stretch>& coarse) {
-  const auto is_between = [&](std::size_t from, double slope, std::size_t to) {
-    return (slope - coarse[from].line.slope()) * (coarse[to].line.slope() - slope) > 0;
-  };
-  const auto is_way = [&](std::size_t i) {
-    return i > 0 && i + 1 < coarse.size() && is_between(i - 1, coarse[i].line.slope(), i + 1);
+/// Whether slopes go from the first to the last of them up or down alone.
+bool is_monotonic(const std::vector<double>& slopes) {
+  for (std::size_t k = 1; k < slopes.size(); ++k) {
+    if (!((slopes[k] - slopes[k - 1]) * (slopes.back() - slopes.front()) > 0)) return false;
+  }
+  return true;
+}
+
+/// Whether a stretch over which the slope changes steadily by that much would look the same.
+bool may_bend(std::span<const double> t, const Stretch& stretch, double change, double noise) {
+  constexpr double kFromLine = 0.0373;  // root mean square distance of a parabola from its line, over change and time
+  const auto samples = static_cast<double>(stretch.end - stretch.begin);
+  const double from_line = kFromLine * std::abs(change) * (t[stretch.end - 1] - t[stretch.begin]);
+  return samples < 2 * kFewestOfPiece || std::sqrt(samples) * from_line < kCornersOfRamp * kCornerOfNoise * noise;
+}
+
+/// Where slopes change steadily, as of a drive that runs up, every corner stays that noise has not made: within
+/// stretches between others of less and of more slope, and where a stretch goes over into one of these.
+std::vector<Stretch> with_corners_of_ramps(std::span<const double> t, std::span<const double> x, double noise,
+                                           const std::vector<Stretch>& fine, const std::vector<Stretch>& coarse) {
+  const auto slope = [&](std::size_t i) { return coarse[i].line.slope(); };
+  const auto is_between = [&](std::size_t i) {
+    return i > 0 && i + 1 < coarse.size() && is_monotonic({slope(i - 1), slope(i), slope(i + 1)});
   };
   std::vector<Stretch> out;
   for (std::size_t i = 0; i < coarse.size(); ++i) {
     const std::vector<Stretch> parts = parts_of(t, x, coarse[i], fine);
-    std::size_t first = 0, last = parts.size() - 1;  // of those that are of one slope
-    if (i > 0 && is_way(i - 1)) {
-      while (first < last && is_between(i - 1, parts[first].line.slope(), i)) ++first;
-    }
-    if (is_way(i + 1)) {
-      while (last > first && is_between(i + 1, parts[last].line.slope(), i)) --last;
+    std::size_t first = 0, last = parts.size() - 1;  // of those that stay one
+    if (is_between(i)) {
+      std::vector<double> slopes = {slope(i - 1)};
+      for (const Stretch& part : parts) slopes.push_back(part.line.slope());
+      slopes.push_back(slope(i + 1));
+      if (is_monotonic(slopes)) first = parts.size();
+    } else {
+      const auto goes_over = [&](std::size_t beside, std::size_t k) {
+        return is_monotonic({slope(beside), parts[k].line.slope(), slope(i)}) &&
+               may_bend(t, parts[k], 0.5 * (slope(i) - slope(beside)), noise);
+      };
+      while (i > 0 && is_between(i - 1) && first < last && goes_over(i - 1, first)) ++first;
+      while (is_between(i + 1) && last > first && goes_over(i + 1, last)) --last;
     }
     for (std::size_t k = 0; k < parts.size(); ++k) {
-      const bool inner = !is_way(i) && k >= first && k <= last;
-      if (inner && k > first) continue;
-      out.push_back(inner ? stretch_of(t, x, parts[first].begin, parts[last].end) : parts[k]);
-      out.back().is_way = !inner;
+      if (k < first || k > last) out.push_back(parts[k]);
+      if (k == first) out.push_back(stretch_of(t, x, parts[first].begin, parts[last].end));
     }
   }
   return out;
+}
+
+/// Stretches between others of less and of more slope are stairs of a ramp where a slope that changes steadily from one
+/// to the other would look the same.
+void find_ramps(std::span<const double> t, double noise, std::vector<Stretch>& stretches) {
+  const auto slope = [&](std::size_t i) { return stretches[i].line.slope(); };
+  const auto error = [&](std::size_t i) {
+    const auto samples = static_cast<double>(stretches[i].end - stretches[i].begin);
+    return noise * std::sqrt(12 / samples) / (t[stretches[i].end - 1] - t[stretches[i].begin]);
+  };
+  const auto goes_on = [&](std::size_t i, double change) {  // from one to the next, as far as noise lets see
+    return std::copysign(1.0, change) * (slope(i + 1) - slope(i)) > -kErrorsOfSlope * (error(i) + error(i + 1));
+  };
+  const std::size_t n = stretches.size();
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const double change = slope(i + 1) - slope(i - 1);
+    stretches[i].on_ramp =
+        goes_on(i - 1, change) && goes_on(i, change) && may_bend(t, stretches[i], 0.5 * change, noise);
+  }
+  if (n < 3) return;
+  if (stretches[1].on_ramp) stretches[0].on_ramp = may_bend(t, stretches[0], slope(1) - slope(0), noise);
+  if (stretches[n - 2].on_ramp)
+    stretches[n - 1].on_ramp = may_bend(t, stretches[n - 1], slope(n - 1) - slope(n - 2), noise);
 }
 
 /// Where two lines meet, if that is near the samples between which the corner lies.
@@ -239,15 +281,15 @@ double corner_between(std::span<const double> t, const Stretch& one, const Stret
   return std::isfinite(meet) && meet > early - near && meet < late + near ? meet : middle;
 }
 
-/// On the way from one slope to another lines are short, and meet far from where they were split: what is between two
-/// corners rises as much as they are apart.
-void join_ways(const std::vector<Stretch>& stretches, std::vector<LinePiece>& pieces) {
+/// Stairs of a ramp are short, and meet far from where they were split: between two corners the values rise as much as
+/// these are apart.
+void join_stairs(const std::vector<Stretch>& stretches, std::vector<LinePiece>& pieces) {
   const auto at_corner = [&](std::size_t i) {
     return 0.5 * (stretches[i - 1].line.at(pieces[i].begin) + stretches[i].line.at(pieces[i].begin));
   };
   for (std::size_t i = 1; i + 1 < pieces.size(); ++i) {
     const double lasts = pieces[i + 1].begin - pieces[i].begin;
-    if (stretches[i].is_way && lasts > 0) pieces[i].slope = (at_corner(i + 1) - at_corner(i)) / lasts;
+    if (stretches[i].on_ramp && lasts > 0) pieces[i].slope = (at_corner(i + 1) - at_corner(i)) / lasts;
   }
 }
 
@@ -307,12 +349,13 @@ std::vector<LinePiece> piecewise_lines(std::span<const double> t, std::span<cons
   merge_alike(t, x, noise, 0, fine);
   merge_alike(t, x, noise, kLeastChangeOfSlope, stretches);
   for (int again = 0; again < 3; ++again) move_corners(t, x, stride, stretches);
-  stretches = with_ways(t, x, fine, stretches);
+  stretches = with_corners_of_ramps(t, x, noise, fine, stretches);
+  find_ramps(t, noise, stretches);
   for (std::size_t i = 0; i < stretches.size(); ++i) {
     const double begin = i == 0 ? t.front() : corner_between(t, stretches[i - 1], stretches[i]);
-    pieces.push_back({begin, stretches[i].line.slope(), false});
+    pieces.push_back({begin, stretches[i].line.slope(), false, stretches[i].on_ramp});
   }
-  join_ways(stretches, pieces);
+  join_stairs(stretches, pieces);
   settle_levels(stretches, t, noise, pieces);
   return pieces;
 }

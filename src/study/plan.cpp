@@ -156,7 +156,8 @@ void expect(const DiagnosedTraces& diagnosed, const OpenQuestion& question, cons
     PlannedExperiment& one = weighed.planned;
     if (!any) one.reason = "its motion could not be simulated";
     set_chances(question, chances_of(question, weighed), weighed);
-    if (!any) std::fill(one.of_models.begin(), one.of_models.end(), one.probability = 0);
+    if (!any) one.probability = 0;
+    for (double& p : one.of_models) p = any ? p : 0 * p;  // NaN stays where nothing was asked for
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <random>
 #include <utility>
 #include <vector>
@@ -63,6 +64,23 @@ TEST(LoadPointMotion, ARampIsFollowedAsItWasRecorded) {
     largest = std::max(largest, std::abs(at - displacement(times[i])));
   }
   EXPECT_LT(largest, 6e-8);
+}
+
+/// A drive that hunts about its speeds has three of them, and a slide at a speed between two others is no ramp.
+TEST(LoadPointMotion, SlidesBetweenOthersAreNoRamps) {
+  for (const double hunting : {0.0, 0.07}) {
+    Trace trace = steps_at(20, 240);
+    double at = 0;
+    for (std::size_t i = 0; i < trace.time.size(); ++i) {
+      trace.drive_position.push_back(std::round(at / 1e-8) * 1e-8);
+      const double t = trace.time[i], speed = t < 80 ? 1e-6 : t < 160 ? 3e-6 : 10e-6;
+      at += speed * (1 + hunting * std::sin(2 * std::numbers::pi * t / 10)) / 20;
+    }
+    const Motion motion = compute_motion(std::move(trace));
+    const auto slides = std::count_if(motion.load_point.begin(), motion.load_point.end(),
+                                      [](const LoadPointPhase& phase) { return !phase.on_ramp; });
+    EXPECT_EQ(slides, 3) << hunting;
+  }
 }
 
 }  // namespace

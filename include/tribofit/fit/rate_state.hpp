@@ -44,9 +44,9 @@ struct RateStateOptions {
 /// A change of the speed of the load point with the samples that show what friction does: from within the sliding
 /// before it until sliding before the next one. A hold is one of them, from where the load point stops.
 struct VelocityStep {
-  double time = 0;               ///< at which the speed changes [s], as friction answers it
-  double recorded = 0;           ///< the same as it was stated or recorded [s]
-  double time_std_error = 0;     ///< of `time` [s]; 0: it was not fitted
+  double time = 0;      ///< at which the speed changes [s], as friction answers it
+  double recorded = 0;  ///< the same as it was stated or recorded [s]
+  double time_std_error = std::numeric_limits<double>::quiet_NaN();  ///< of `time` [s]; NaN: it was not fitted
   double before = 0, after = 0;  ///< speeds of the load point [m/s]; of a hold those of sliding around it
   double hold = 0;               ///< time at rest [s]; 0: none
   double displacement = 0;       ///< of the load point at `time` [m]
@@ -60,12 +60,13 @@ struct VelocityStep {
 struct RateStateFit {
   StateEvolution evolution = StateEvolution::ageing;
   std::optional<std::size_t> step;
+  std::size_t states = 1;                ///< state variables
   std::vector<FitParameter> parameters;  ///< a, b, D_c, k; with two states b_2 and D_c2 behind D_c
   std::vector<double> covariance;        ///< of ln D and ln k, and the others as they are, row by row
   Estimate rate_dependence;              ///< a - b (of all states) [1]; NaN where a bound holds one of them
   double rate_dependence_lower95 = 0, rate_dependence_upper95 = 0;
-  /// [1/m], (b - a)/D_c of one state, below which steady sliding is unstable, and k over it; NaN where it is stable on
-  /// any machine, or may be.
+  /// [1/m], (b - a)/D_c of one state, below which steady sliding is unstable, and k over it; NaN where friction does
+  /// not fall with speed beyond doubt (of two states, where it rises, unless k_c is known to a factor).
   double critical_stiffness = std::numeric_limits<double>::quiet_NaN();
   double stiffness_ratio = std::numeric_limits<double>::quiet_NaN(), stiffness_ratio_lower95 = 0,
          stiffness_ratio_upper95 = 0;
@@ -80,7 +81,7 @@ struct RateStateFit {
   double held_out_rmse = std::numeric_limits<double>::quiet_NaN();  ///< steps that were left out of the fit
   double degrees_of_freedom = 1;
   std::size_t samples = 0;
-  std::vector<double> time_std_error;     ///< of each step of the fit [s]; 0: its time was not fitted
+  std::vector<double> time_std_error;     ///< of each step of the fit [s]; NaN: its time was not fitted
   std::vector<Correlation> correlations;  ///< above 0.9 in size
   std::vector<std::string> messages;
   bool converged = false;
@@ -135,7 +136,7 @@ struct RateStateAnalysis {
   /// Chance that what one state leaves more than two is noise; NaN: not compared, as where white noise is all it
   /// leaves.
   double states_p_value = std::numeric_limits<double>::quiet_NaN();
-  /// Nominal chance that noise alone answers the steps so well; NaN: not compared.
+  /// Nominal chance that noise alone answers the steps so well; NaN: not compared, as where what is left is no noise.
   double answer_p_value = std::numeric_limits<double>::quiet_NaN();
   double law_p_value =
       std::numeric_limits<double>::quiet_NaN();  ///< bound of the chance that the other law is true; NaN: not compared

@@ -56,7 +56,7 @@ inline double critical_stiffness(double a, double b, double distance) {
 }
 /// The same of so many state variables: of two by Routh's criterion for sliding that is disturbed a little. At most
 /// zero: sliding is stable on any spring. Friction of two states can rise with speed, and sliding be unstable on a soft
-/// spring all the same, where the quick state alone falls.
+/// spring all the same, where the quick state alone falls; it may then be stable again on a much softer one.
 double critical_stiffness(const RateStateParameters<double>& parameters, std::size_t states);
 
 }  // namespace tribofit

@@ -41,8 +41,9 @@ inline constexpr std::array<ConditionInfo, 3> condition_infos = {
 /// A stretch of a record in which the load point, the far end of a machine that is no stiffer than k, moves at one
 /// speed.
 struct LoadPointPhase {
-  double begin = 0;  ///< [s] from the trace's first sample
-  double speed = 0;  ///< [m/s], at least 0; 0: a hold
+  double begin = 0;      ///< [s] from the trace's first sample
+  double speed = 0;      ///< [m/s], at least 0; 0: a hold
+  bool on_ramp = false;  ///< one of the stairs by which a speed that changes steadily was read
 };
 
 /// Where the motion of a load point comes from, and so how well the times of its steps are known.

@@ -150,7 +150,7 @@ struct PlanOptions {
   std::optional<std::chrono::steady_clock::time_point> until = {};
 };
 
-/// Below this probability an experiment is not expected to settle anything.
+/// Below this probability, as it is stated, an experiment is not expected to settle anything.
 inline constexpr double kHopeless = 0.2;
 
 /// Plans the runs that settle what a diagnosis leaves open.
@@ -166,7 +166,8 @@ inline constexpr double kHopeless = 0.2;
 /// few the mean is that of several draws. Such a chance is calibrated by what came of the runs of simulated
 /// investigations (J. Platt, Advances in Large Margin Classifiers, 1999, p. 61). Records of the best are diagnosed in
 /// full: what is named counts beside the calibrated chance as a beta prior, and the chances of the others are lowered
-/// by as much as full diagnoses named less than was expected, until the best of all has been diagnosed in full. Experiments are ranked by probability less a cost for each minute.
+/// by as much as full diagnoses named less than was expected, until the best of all has been diagnosed in full.
+/// Experiments are ranked by probability less a cost for each minute.
 ///
 /// Only stick-slip on a rig that can be identified is simulated; `reason` says why where it cannot be.
 /// Cost: some 30 judgements of a few models each and a dozen diagnoses, 10 to 20 s of two processors for a record of
