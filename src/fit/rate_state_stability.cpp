@@ -40,7 +40,9 @@ void set_critical_stiffness(const std::vector<double>& p, double quantile,
     return std::log(parameters_from(at.data(), fit.states).stiffness) - critical(at);
   };
   const double half = half_width(ratio, p, quantile, covariance);
-  if (!std::isfinite(half) || (rises && !(half_width(critical, p, quantile, covariance) < 1))) return;
+  if (!std::isfinite(half) ||
+      (rises && !(2 * half_width(critical, p, quantile, covariance) < std::log(kWidestInterval))))
+    return;
   fit.critical_stiffness = std::exp(critical(p));
   fit.stiffness_ratio = std::exp(ratio(p));
   fit.stiffness_ratio_lower95 = fit.stiffness_ratio * std::exp(-half);

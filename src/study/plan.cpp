@@ -156,8 +156,11 @@ void expect(const DiagnosedTraces& diagnosed, const OpenQuestion& question, cons
     PlannedExperiment& one = weighed.planned;
     if (!any) one.reason = "its motion could not be simulated";
     set_chances(question, chances_of(question, weighed), weighed);
-    if (!any) one.probability = 0;
-    for (double& p : one.of_models) p = any ? p : 0 * p;  // NaN stays where nothing was asked for
+    if (any) continue;
+    one.probability = 0;
+    for (double& p : one.of_models) {
+      if (std::isfinite(p)) p = 0;  // and not those that were not simulated
+    }
   }
 }
 
