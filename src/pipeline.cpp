@@ -36,7 +36,6 @@ constexpr const char* kFilterInModel =
 /// What a trace is read for.
 enum class Purpose { anything, law, rig };
 
-/// The stages up to the cycles: read, move, segment, check.
 /// Values of velocity steps alone are given for a record of them.
 void refuse_given_of_steps(const IdentifyOptions& options, const Motion& motion) {
   if (options.rate_state.given.empty()) return;
@@ -46,20 +45,21 @@ void refuse_given_of_steps(const IdentifyOptions& options, const Motion& motion)
                    "leave it out of --start and --bounds, or state the kind of the record with --kind velocity-steps");
 }
 
-Identification prepare(const TraceInput& input, const IdentifyOptions& options, const MotionOptions& motion,
-                       Purpose purpose) {
+Identification facts_of(const std::string& path, const Trace& trace) {
   Identification out;
-  out.path = input.path;
-  Trace trace = input.trace ? *input.trace : read_file(input, options);
+  out.path = path;
   out.checksum = trace.checksum;
   out.samples = trace.size();
   out.duration = trace.duration();
   out.rate = trace.rate();
   out.notes = trace.notes;
   out.warnings = trace.warnings;
+  return out;
+}
 
-  out.motion =
-      compute_motion(std::move(trace), options.instruments, with_corrections(motion, options.effects), options.threads);
+/// The stages behind the motion of a trace: segment, check.
+Identification segment(Identification out, Motion motion, const IdentifyOptions& options, Purpose purpose) {
+  out.motion = std::move(motion);
   if (out.motion.is_points()) out.duration = out.rate = std::nan("");
   stop_point();
   const bool driven = is_driven_in_steps(out.motion.kind);
@@ -84,6 +84,22 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
   for (std::string& obstacle : obstacles(out.motion, out.segmentation, purpose != Purpose::rig))
     out.refuse(std::move(obstacle));
   return out;
+}
+
+Identification prepare(const TraceInput& input, const IdentifyOptions& options, const MotionOptions& motion,
+                       Purpose purpose) {
+  Trace trace = input.trace ? *input.trace : read_file(input, options);
+  Identification facts = facts_of(input.path, trace);
+  return segment(
+      std::move(facts),
+      compute_motion(std::move(trace), options.instruments, with_corrections(motion, options.effects), options.threads),
+      options, purpose);
+}
+
+/// What effects of friction need is checked when they are fitted.
+IdentifyOptions of_the_motion(IdentifyOptions options) {
+  options.effects = kinematic_effects(options.effects);
+  return options;
 }
 
 /// Options of a fit of sliding laws that were given, and mean nothing for velocity steps and holds.
@@ -137,9 +153,14 @@ std::shared_ptr<const Trace> read_input(const TraceInput& input, const IdentifyO
 }
 
 Identification prepare_trace(const TraceInput& input, const IdentifyOptions& options) {
-  IdentifyOptions kinematic = options;  // what effects of friction need is checked when they are fitted
-  kinematic.effects = kinematic_effects(options.effects);
-  return prepare(input, kinematic, options.motion, Purpose::anything);
+  return prepare(input, of_the_motion(options), options.motion, Purpose::anything);
+}
+
+Identification prepare_trace(const TraceInput& input, const IdentifyOptions& options, const Motion& uncorrected) {
+  Motion motion = uncorrected;
+  correct_plateau(motion, with_corrections(options.motion, options.effects).plateau);
+  return segment(facts_of(input.path, *read_input(input, options)), std::move(motion), of_the_motion(options),
+                 Purpose::anything);
 }
 
 void fit_trace(const IdentifyOptions& options, Identification& trace) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "change_point.hpp"
@@ -63,13 +64,16 @@ void add_starts_at_lines(const FitContext& context, std::vector<std::vector<doub
     const SpectralLines lines =
         strongest_lines(context.records[0], context.observations, about_mean_curve(context.observations),
                         context.bounds.lower[k], context.bounds.upper[k], context.evaluation.threads);
-    const ModelResiduals residuals = context.residuals(some_slips(context.observations, kValuesToCompare));
-    for (const double frequency : lines.frequencies) {
-      starts.push_back(from_data);
-      starts.back()[k] = frequency;
-      if (phase != parameters.end())
-        starts.back() = start_at_line(residuals, starts.back(), static_cast<std::size_t>(phase - parameters.begin()));
-    }
+    const std::vector<std::size_t> some = some_slips(context.observations, kValuesToCompare);
+    const std::size_t before = starts.size(), count = lines.frequencies.size();
+    starts.resize(before + count, from_data);
+    run_tasks(count, context.evaluation.threads, [&](std::size_t line) {
+      std::vector<double>& start = starts[before + line];
+      start[k] = lines.frequencies[line];
+      if (phase == parameters.end()) return;
+      const ModelResiduals residuals = context.residuals(some);  // its formulas must not be shared between threads
+      start = start_at_line(residuals, start, static_cast<std::size_t>(phase - parameters.begin()));
+    });
   }
 }
 
@@ -93,13 +97,33 @@ std::vector<std::vector<double>> different_starts(const FitContext& context) {
   return starts;
 }
 
+/// Searches from each start. A look soon gives up all but the two that are ahead.
+std::vector<SolverResult> searches_from(const FitContext& context, const std::vector<std::vector<double>>& starts,
+                                        const std::vector<std::size_t>& part, const SolverOptions& search) {
+  constexpr std::size_t kAhead = 2;
+  const bool gives_up = context.is_look() && starts.size() > kAhead;
+  SolverOptions first = search;
+  if (gives_up) first.max_iterations = kIterationsToCompare;
+  std::vector<SolverResult> tries(starts.size());
+  run_tasks(starts.size(), context.evaluation.threads,
+            [&](std::size_t k) { tries[k] = context.solve(part, starts[k], first); });
+  if (!gives_up) return tries;
+  std::vector<std::size_t> order(starts.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return tries[a].cost < tries[b].cost; });
+  run_tasks(kAhead, context.evaluation.threads, [&](std::size_t k) {
+    SolverResult& own = tries[order[k]];
+    if (!own.converged) own = context.solve(part, own.p, search);
+  });
+  return tries;
+}
+
 /// Where the best of several starts leads, compared on slips with about so many values.
 std::vector<double> best_of_starts(const FitContext& context, const std::vector<std::vector<double>>& starts,
                                    std::size_t values, const SolverOptions& search, Fit& fit) {
   const std::vector<std::size_t> part = some_slips(context.observations, values);
-  std::vector<SolverResult> tries(starts.size());
-  run_tasks(starts.size(), context.evaluation.threads,
-            [&](std::size_t k) { tries[k] = context.solve(part, starts[k], search); });
+  const std::vector<SolverResult> tries = searches_from(context, starts, part, search);
   std::size_t best = 0;
   for (std::size_t k = 1; k < tries.size(); ++k) {
     if (tries[k].cost < tries[best].cost * (1 - 1e-6)) best = k;
@@ -148,9 +172,7 @@ std::vector<double> search_on(const Observations& few, const std::vector<std::si
   constexpr std::size_t kMeansToCompare = 2000;  // of as many slips as twice the values that are no means
   std::vector<double> p = best_of_starts(coarse, starts, kMeansToCompare, search, fit);
   if (context.is_look() && !change) {  // the scatter is taken out by the steps over all values
-    SolverOptions longer = search;
-    longer.max_iterations *= 2;
-    return coarse.solve(slips, p, longer).p;
+    return coarse.solve(slips, p, search).p;
   }
   if (!context.is_look()) p = coarse.solve(slips, p, search).p;
   Bounds held = coarse.bounds;
@@ -182,12 +204,11 @@ Solution joint_estimate(FitContext& context, Fit& fit) {
     out.result.p = search_on(few, slips, context, starts, change, fit);
     out.result.converged = true;
     if (change && look) held.lower[change->time] = held.upper[change->time] = out.result.p[change->time];
-    if (refine(context, look ? std::nullopt : change, held, out.result.p)) return out;
     if (look) {
-      const ModelResiduals plain(context.model, context.observations, all, context.evaluation);
-      context.whitening = plain.whitening_at(out.result.p.data());
+      refine_look(context, held, out.result.p);
       return out;
     }
+    if (refine(context, change, held, out.result.p)) return out;
     held = context.bounds;
   }
   settle(context, all, change, held, out.result.p);

@@ -84,7 +84,6 @@ bool refine(FitContext& context, const std::optional<ChangePoint>& change, Bound
   const std::vector<std::size_t> all = all_slips(context.observations);
   const ModelResiduals plain(context.model, context.observations, all, context.evaluation);
   const std::vector<double> begin = p;
-  const bool look = context.is_look();
   double last = std::numeric_limits<double>::infinity();
   for (int step = 0; step < kMostRefiningSteps; ++step) {
     context.whitening = plain.whitening_at(p.data());
@@ -97,17 +96,22 @@ bool refine(FitContext& context, const std::optional<ChangePoint>& change, Bound
     const double length = take_gauss_newton_step(*here, held, static_cast<double>(context.observations.size()), p);
     if (length <= kLastStep) return true;
     if (!(length < kShortening * last)) break;
-    if (look && step + 1 == kRefiningStepsOfLook) {
-      // Where the data hardly know a parameter its standard error says nothing.
-      if (length <= kLongestStepOfLook && plain_squares(plain, p) <= kRiseOfLook * plain_squares(plain, begin))
-        return true;
-      break;
-    }
     last = length;
   }
   p = begin;
   context.whitening = {};
   return false;
+}
+
+void refine_look(FitContext& context, const Bounds& held, std::vector<double>& p) {
+  const std::vector<std::size_t> all = all_slips(context.observations);
+  const ModelResiduals plain(context.model, context.observations, all, context.evaluation);
+  context.whitening = plain.whitening_at(p.data());
+  const std::optional<Linearisation> here = linearise(context.residuals(all), p);
+  if (!here) return;
+  std::vector<double> next = p;
+  const double length = take_gauss_newton_step(*here, held, static_cast<double>(context.observations.size()), next);
+  if (std::isfinite(length) && plain_squares(plain, next) <= kRiseOfLook * plain_squares(plain, p)) p = std::move(next);
 }
 
 }  // namespace tribofit

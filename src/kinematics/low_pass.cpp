@@ -136,14 +136,14 @@ double left_by_decay(const std::vector<Restick>& some) {
 }
 
 /// Over re-sticks.
-Smallest usual(const std::vector<Restick>& some, const Filter& filter) {
-  std::vector<double> squares, slopes, places;
-  for (const Restick& restick : some) {
-    const Smallest best = fit(restick, filter);
-    places.push_back(best.at);
-    squares.push_back(best.squares / static_cast<double>(restick.velocity.size()));
-    slopes.push_back(best.slope);
-  }
+Smallest usual(const std::vector<Restick>& some, const Filter& filter, int threads = 1) {
+  std::vector<double> squares(some.size()), slopes(some.size()), places(some.size());
+  run_tasks(some.size(), threads, [&](std::size_t k) {
+    const Smallest best = fit(some[k], filter);
+    places[k] = best.at;
+    squares[k] = best.squares / static_cast<double>(some[k].velocity.size());
+    slopes[k] = best.slope;
+  });
   return {median(std::move(squares)), median(std::move(slopes)), median(std::move(places))};
 }
 
@@ -271,7 +271,7 @@ Look look_at(const Looked& at, double from, double shortest = kKinkRest) {
   std::vector<double> falls;
   for (const Restick& restick : some) falls.push_back(restick.fall);
   const double most = median(falls);
-  const Smallest sharp = usual(some, {});
+  const Smallest sharp = usual(some, {}, threads);
   Smallest best = sharp;
   Filter filter;
   const std::vector<Filter> filters = filters_worth(some, filters_for(most), threads);
@@ -281,7 +281,7 @@ Look look_at(const Looked& at, double from, double shortest = kKinkRest) {
     if (behind[k].squares < best.squares) best = behind[k], filter = filters[k];
   }
   if (sharp.squares > kKinkExplained * best.squares) {
-    const auto left = [&](double width) { return usual(some, {filter.kind, width}).squares; };
+    const auto left = [&](double width) { return usual(some, {filter.kind, width}, threads).squares; };
     filter.width = golden_section(left, filter.width / kKinkNext, filter.width * kKinkNext, kCuts).at;
     best = usual(some, filter);
   }

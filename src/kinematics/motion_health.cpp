@@ -145,7 +145,8 @@ void MotionStages::compare_plateau() {
   if (disc_.largest > 0) ratio.std_error = std::hypot(ratio.std_error, motion_.velocity_zero.std_error / disc_.largest);
   motion_.plateau_ratio = ratio.value;
   motion_.plateau_ratio_std_error = ratio.std_error;
-  correct_plateau(motion_, ratio, options_.plateau);
+  motion_.plateau_ratio_in_motion = ratio.in_motion;
+  correct_plateau(motion_, options_.plateau);
 }
 
 }  // namespace tribofit::kinematics

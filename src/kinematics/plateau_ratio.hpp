@@ -13,7 +13,6 @@ struct PlateauRatio {
   double value = std::numeric_limits<double>::quiet_NaN();      ///< creep of the contact taken off
   double std_error = std::numeric_limits<double>::quiet_NaN();  ///< from stick to stick
   double in_motion = std::numeric_limits<double>::quiet_NaN();  ///< the same of v_r as it stands (1 behind a high-pass)
-  bool known() const { return value == value; }
 };
 
 /// Ratio of the plateau of v_b to omega r, from means over parts of every plateau between 45 and 80 % of it: re-stick,
@@ -27,8 +26,5 @@ struct PlateauRatio {
 /// middles of the plateaus. NaN with fewer than three plateaus. `plateaus` in blocks of `factor` samples of the motion.
 /// Cost: one pass over at most 512 plateaus; behind a high-pass one over the samples.
 PlateauRatio plateau_ratio(const Motion& motion, const Plateaus& plateaus, std::size_t factor);
-
-/// Corrects the plateau as asked: `radius` scales omega r, `gain` divides v_b. Says so in the motion's notes.
-void correct_plateau(Motion& motion, const PlateauRatio& ratio, PlateauCorrection correction);
 
 }  // namespace tribofit::kinematics

@@ -32,7 +32,9 @@ Json diagnosed_json(const DiagnosedTraces& result, const JsonOptions& options);
 /// A report as the page takes it: its members under their own names, those that have their default value left out,
 /// numbers with no more digits than are drawn.
 Json report_json(const Report& report);
-/// One of its sections.
+/// All but its sections, one of those, and an item of one.
+Json report_json_without_sections(const Report& report);
 Json section_json(const ReportSection& section);
+Json item_json(const ReportItem& item);
 
 }  // namespace tribofit

@@ -7,6 +7,7 @@
 #include "report/numbers.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/ingest/units.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit::workbench {
 
@@ -115,6 +116,24 @@ std::string text_of_answer(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+namespace {
+
+/// A section; its items, which are long, are written side by side.
+std::string section_text(const ReportSection& section) {
+  std::vector<std::string> items(section.items.size());
+  run_tasks(items.size(), 0, [&](std::size_t k) { items[k] = text_of_answer(item_json(section.items[k])); });
+  std::string out = text_of_answer(object("id", section.id, "title", section.title));
+  out.pop_back();  // the closing brace
+  out += ",\"items\":[";
+  for (const std::string& item : items) {
+    if (out.back() != '[') out += ',';
+    out += item;
+  }
+  return out + "]}";
+}
+
+}  // namespace
+
 std::string WrittenSections::text_of(const std::shared_ptr<const ReportSection>& section) {
   constexpr std::size_t kMostKept = 4;
   {
@@ -123,7 +142,7 @@ std::string WrittenSections::text_of(const std::shared_ptr<const ReportSection>&
       if (known == section) return text;
     }
   }
-  std::string text = text_of_answer(section_json(*section));
+  std::string text = section_text(*section);
   const std::lock_guard lock(mutex_);
   if (kept_.size() >= kMostKept) kept_.erase(kept_.begin());
   kept_.emplace_back(section, text);
@@ -132,18 +151,16 @@ std::string WrittenSections::text_of(const std::shared_ptr<const ReportSection>&
 
 std::string picture_text(const WorkbenchPicture& picture, double turn, const WorkbenchSession& session,
                          WrittenSections& written) {
-  Json report = report_json(picture.report);
-  const Json sections = std::move(report["sections"]);
-  report.erase("sections");
+  const std::vector<ReportSection>& sections = picture.report.sections;
   std::string list;
   const auto add = [&](const std::string& section) { list += (list.empty() ? "" : ",") + section; };
-  for (const Json& section : sections) {
+  for (const ReportSection& section : sections) {
     if (&section == &sections.back() && !picture.cycles->items.empty()) add(written.text_of(picture.cycles));
-    add(text_of_answer(section));
+    add(section_text(section));
   }
   const Json others = {
       {"rung", rung_json(picture.rung, session.motion(), true)}, {"rungs", rungs_json(session)}, {"turn", turn}};
-  std::string out = text_of_answer(others), shown = text_of_answer(report);
+  std::string out = text_of_answer(others), shown = text_of_answer(report_json_without_sections(picture.report));
   out.pop_back(), shown.pop_back();  // the closing braces
   return out + ",\"report\":" + shown + ",\"sections\":[" + list + "]}}";
 }

@@ -33,9 +33,11 @@ constexpr int kMostFits = 16;
 /// Motions with corrections that are kept: who compares a few effects goes to and fro between them.
 constexpr std::size_t kMostCorrected = 3;
 
-Identification whole_trace(const WorkbenchOptions& options, IdentifyOptions identify) {
+/// uncorrected: its motion without corrections, once it is known.
+Identification whole_trace(const WorkbenchOptions& options, IdentifyOptions identify, const Motion* uncorrected) {
   identify.selection = {};
-  Identification out = prepare_trace(options.input, identify);
+  Identification out = uncorrected != nullptr ? prepare_trace(options.input, identify, *uncorrected)
+                                              : prepare_trace(options.input, identify);
   out.notes.insert(out.notes.end(), options.notes.begin(), options.notes.end());
   out.warnings.insert(out.warnings.begin(), options.warnings.begin(), options.warnings.end());
   return out;
@@ -128,7 +130,8 @@ struct WorkbenchSession::State {
       std::rotate(known, known + 1, corrected.end());
     } else {
       if (corrected.size() >= kMostCorrected) corrected.erase(corrected.begin());
-      corrected.emplace_back(std::move(asked), std::make_shared<Prepared>(whole_trace(options, identify)));
+      corrected.emplace_back(std::move(asked),
+                             std::make_shared<Prepared>(whole_trace(options, identify, &uncorrected->motion())));
     }
     return corrected.back().second;
   }
@@ -196,7 +199,7 @@ WorkbenchSession::WorkbenchSession(WorkbenchOptions options) : state_(std::make_
   s.options.identify.selection = {};
   s.options.identify.fit.given.clear();
   s.options.input.trace = read_input(s.options.input, s.options.identify);
-  Identification trace = whole_trace(s.options, s.options.identify);
+  Identification trace = whole_trace(s.options, s.options.identify, nullptr);
   if (!trace.analysed) {
     throw InputError("the data were read but cannot carry an analysis: " + trace.warnings.back(),
                      "`identify` without 'explore' says more", {trace.path, 0, ""});

@@ -117,6 +117,8 @@ struct Motion {
   /// where v_r was measured, or where too little sticks.
   double plateau_ratio = std::numeric_limits<double>::quiet_NaN();
   double plateau_ratio_std_error = std::numeric_limits<double>::quiet_NaN();
+  /// The same of v_r as it stands: near 1 where a high-pass was undone, whose integration constant was set to omega r.
+  double plateau_ratio_in_motion = std::numeric_limits<double>::quiet_NaN();
   PlateauCorrection plateau_correction = PlateauCorrection::none;  ///< what was done about it
   double corrected_ratio = 1;                                      ///< the ratio that was corrected; 1: none
 
@@ -172,6 +174,11 @@ struct MotionOptions {
 /// sensor are settled. A spring slider is a block on its spring, seen from the driven end
 /// (kinematics/spring_slider.hpp). Cost: about six passes over the samples.
 Motion compute_motion(Trace trace, const Instruments& instruments = {}, const MotionOptions& options = {});
+
+/// Puts the plateau of a motion right whose plateau was left as it is, as compute_motion() does with
+/// MotionOptions::plateau: `radius` scales omega r, `gain` divides v_b. Says so in its notes; without a known ratio
+/// nothing is done. Cost: one pass over the samples.
+void correct_plateau(Motion& motion, PlateauCorrection correction);
 
 /// Block acceleration a_b = -dv_r/dt + d(omega r)/dt [m/s^2] by a Savitzky-Golay derivative (quadratic, 2*half_window+1
 /// samples).

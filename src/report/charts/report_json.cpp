@@ -160,16 +160,25 @@ Json item_json(const Chart& chart) {
 
 }  // namespace
 
+Json item_json(const ReportItem& item) {
+  return std::visit([](const auto& own) { return item_json(own); }, item);
+}
+
 Json section_json(const ReportSection& section) {
-  const auto item = [](const ReportItem& i) { return std::visit([](const auto& own) { return item_json(own); }, i); };
+  const auto item = [](const ReportItem& i) { return item_json(i); };
   return object("id", section.id, "title", section.title, "items", list_of(section.items, item));
 }
 
-Json report_json(const Report& report) {
+Json report_json_without_sections(const Report& report) {
   const auto fact = [](const auto& f) { return Json::array({f.first, f.second}); };
   return object("kind", report.kind, "title", report.title, "subtitle", report.subtitle, "lead", report.lead,
-                "warnings", report.warnings, "facts", list_of(report.facts, fact), "sections",
-                list_of(report.sections, section_json), "styles", styles_json());
+                "warnings", report.warnings, "facts", list_of(report.facts, fact), "styles", styles_json());
+}
+
+Json report_json(const Report& report) {
+  Json json = report_json_without_sections(report);
+  json["sections"] = list_of(report.sections, section_json);
+  return json;
 }
 
 }  // namespace tribofit
