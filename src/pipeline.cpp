@@ -127,6 +127,9 @@ void fit_driven(const IdentifyOptions& options, Identification& trace) {
   if (!unused.empty())
     trace.warnings.push_back(
         fmt::format("velocity steps and holds are fitted by rate and state, without {}", fmt::join(unused, ", ")));
+  if (options.rate_state.given_in_newtons && trace.motion.friction_kind != FrictionKind::force)
+    throw InputError("a, b or k was given in newtons, and friction is a coefficient",
+                     "give a and b without a unit, and k as in 0.005/um");
   RateStateOptions own = options.rate_state;
   own.threads = options.threads;
   own.excluded = options.selection.excluded;

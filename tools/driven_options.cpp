@@ -50,14 +50,14 @@ void require_unit(std::string_view text, const std::string& option, const char* 
 }
 
 /// "0.005/um" is 0.005 1/um.
-double parameter_value(const std::string& text, const Named& parameter, const std::string& option) {
+double parameter_value(const std::string& text, const Named& parameter, const std::string& option, Quantity quantity) {
   std::string spelled(trimmed(text));
   if (parameter.quantity != Quantity::dimensionless) require_unit(spelled, option, parameter.example);
   const std::size_t slash = spelled.find('/');
   if (parameter.quantity == Quantity::inverse_length && slash != std::string::npos && slash > 0 &&
       spelled.find_first_not_of("+-.0123456789eE ") == slash)
     spelled.insert(slash, " 1");
-  return parse_quantity(spelled, parameter.quantity, option + " " + std::string(parameter.name));
+  return parse_quantity(spelled, quantity, option + " " + std::string(parameter.name));
 }
 
 GivenParameter& entry_named(std::string_view name, std::vector<GivenParameter>& given) {
@@ -84,10 +84,22 @@ void for_each_given(const std::vector<std::string>& texts, const std::vector<Giv
   }
 }
 
+/// A value of a fit: of friction in newtons a and b are forces, and k is a stiffness.
+double given_value(const std::string& text, const Named& parameter, const std::string& option,
+                   RateStateOptions& options) {
+  const bool in_newtons = parameter.quantity != Quantity::length && text.find('N') != std::string::npos;
+  options.given_in_newtons = options.given_in_newtons || in_newtons;
+  const Quantity quantity = !in_newtons                                      ? parameter.quantity
+                            : parameter.quantity == Quantity::inverse_length ? Quantity::stiffness
+                                                                             : Quantity::force;
+  return parameter_value(text, parameter, option, quantity);
+}
+
 /// fitted: what is given of other names.
-void read_given(const Settings& s, const std::vector<GivenParameter>& fitted, std::vector<GivenParameter>& given) {
+void read_given(const Settings& s, const std::vector<GivenParameter>& fitted, RateStateOptions& options) {
+  std::vector<GivenParameter>& given = options.given;
   for_each_given(s.start_values, fitted, [&](const Named& parameter, const std::string& text) {
-    entry_named(parameter.name, given).start = parameter_value(text, parameter, "--start");
+    entry_named(parameter.name, given).start = given_value(text, parameter, "--start", options);
   });
   for_each_given(s.bounds, fitted, [&](const Named& parameter, const std::string& text) {
     const std::size_t dots = text.find("..");
@@ -96,8 +108,8 @@ void read_given(const Settings& s, const std::vector<GivenParameter>& fitted, st
     const std::size_t unit = high.find_first_not_of("+-.0123456789eE ");
     if (unit != std::string::npos && low.find_first_not_of("+-.0123456789eE ") == std::string::npos)
       low += high.substr(unit);
-    const GivenParameter::Bounds bounds = {parameter_value(low, parameter, "--bounds"),
-                                           parameter_value(high, parameter, "--bounds")};
+    const GivenParameter::Bounds bounds = {given_value(low, parameter, "--bounds", options),
+                                           given_value(high, parameter, "--bounds", options)};
     const bool positive = parameter.quantity == Quantity::dimensionless || bounds.lower > 0;
     if (bounds.lower > bounds.upper || !positive)
       throw UsageError("--bounds: '" + text + "' of " + std::string(parameter.name) +
@@ -121,7 +133,7 @@ std::map<std::string, double> rate_state_values(const std::string& text, const s
     const Named* parameter = name == "mu_0" ? &kBaseFriction : find_parameter(name);
     if (equals == std::string::npos || parameter == nullptr)
       throw UsageError(option + ": '" + part + "' is not NAME=VALUE of a, b, D_c, k, mu_0, b_2 or D_c2");
-    values[name] = parameter_value(part.substr(equals + 1), *parameter, option);
+    values[name] = parameter_value(part.substr(equals + 1), *parameter, option, parameter->quantity);
   }
   return values;
 }
@@ -179,6 +191,6 @@ RateStateOptions driven_options_from(const Settings& s, const std::vector<GivenP
   if (!s.from.empty()) options.from = stated_value(s.from, Quantity::time, "--from", "s");
   if (!s.to.empty()) options.to = stated_value(s.to, Quantity::time, "--to", "s");
   if (!(options.from < options.to)) throw UsageError("--from and --to leave nothing between them");
-  if (may_be_driven(s)) read_given(s, is_stated(s) ? std::vector<GivenParameter>() : fitted, options.given);
+  if (may_be_driven(s)) read_given(s, is_stated(s) ? std::vector<GivenParameter>() : fitted, options);
   return options;
 }

@@ -203,6 +203,7 @@ double RateStateData::displacement_at(double t) const {
 RateStateData rate_state_data(const Motion& motion, const RateStateOptions& options, std::size_t most,
                               std::vector<std::string>& messages) {
   RateStateData data;
+  data.is_force = motion.friction_kind == FrictionKind::force;
   if (motion.size() < 2) return data;
   const double begin = std::max(options.from, motion.time.front()), end = std::min(options.to, motion.time.back());
   data.phases = phases_within(motion.load_point, begin);

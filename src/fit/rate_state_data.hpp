@@ -19,6 +19,7 @@ struct RateStateData {
   std::vector<std::size_t> leaving;  ///< the first phase that is not of that sliding
   std::vector<std::size_t> behind;   ///< the first phase of sliding behind it
   double reference_speed = 0;        ///< v0 [m/s]
+  bool is_force = false;             ///< friction is in newtons
 
   /// Values, each the mean of `count` samples, in order of time; those of step s begin at begins[s]. scatter: squares
   /// of the samples about their mean, summed.

@@ -207,7 +207,7 @@ RateStateUnknowns unknowns_of(const RateStateData& data, std::size_t states, con
   }
   RateStateUnknowns out;
   const auto bound_friction = [&](const char* name, const char* description, double lower) {
-    add(out, parameter_of(name, description, "1", 1), false, lower, kLargestOfRange * friction);
+    add(out, parameter_of(name, description, data.is_force ? "N" : "1", 1), false, lower, kLargestOfRange * friction);
   };
   const auto bound_distance = [&](const char* name) {
     add(out, parameter_of(name, "sliding distance over which the contacts are renewed", "um", kMicrometre), true,
@@ -220,7 +220,8 @@ RateStateUnknowns unknowns_of(const RateStateData& data, std::size_t states, con
     bound_friction("b_2", "evolution effect of the second state", -kLargestOfRange * friction);
     bound_distance("D_c2");
   }
-  add(out, parameter_of("k", "stiffness of the machine per normal force", "1/um", 1 / kMicrometre), true,
+  const char* stiffness = data.is_force ? "stiffness of the machine" : "stiffness of the machine per normal force";
+  add(out, parameter_of("k", stiffness, data.is_force ? "N/um" : "1/um", 1 / kMicrometre), true,
       kLeastOfRange * friction / longest, kStiffestOfSampling * friction / finest);
   Scales scales = scales_of(data);
   if (!(scales.distance > 0)) scales.distance = 0.1 * longest;

@@ -203,6 +203,7 @@ void recognise_steps(FileRecord& recording) {
   if (is_plain && !(is_coefficient && go_one_way(recording[Channel::x_d]))) {
     is_plain = false;
     if (!displacement->requested) {
+      recording.unused_displacement = recording.column_names[displacement->index];
       recording[Channel::x_d].clear();
       std::erase_if(columns.used, [](const Column& c) { return c.channel == Channel::x_d; });
     }
@@ -304,6 +305,9 @@ void refuse_columns(const FileRecord& recording, const std::string& problem) {
                              : "name the columns by number: --columns time=#1:s,mu=#2,v_b=#3:mm/s";
   if (problem == "no time column")
     advice += ", or give the sampling rate: --rate 20kHz; a table of steady points without time is --kind points";
+  if (problem.starts_with("no velocity") && !recording.unused_displacement.empty())
+    advice += fmt::format("; where {} is the displacement of a drive that keeps to speeds, give --kind velocity-steps",
+                          recording.unused_displacement);
   advice += "; " + lists_columns(recording.path);
   throw InputError(text, advice, {recording.path, 0, ""});
 }

@@ -41,6 +41,7 @@ struct FileRecord {
   std::vector<std::size_t> recipe_steps;  ///< per step: which step of the recipe it belongs to, from 0
   std::optional<RecordKind> kind;         ///< as stated, or as the file shows it
   std::string kind_source;                ///< as in Trace
+  std::string unused_displacement;        ///< column of a displacement of which nothing more is known
   std::vector<std::string> notes, warnings;
 
   bool is_points() const { return kind == RecordKind::points; }

@@ -387,12 +387,13 @@ inline constexpr double kStandstillPeriods = 3, kStandstillPart = 0.1;
 inline constexpr std::size_t kFewestPeriods = 5;
 
 // ---- the load point of velocity steps and holds
-/// Speed backwards over the fastest, below which it creeps in a hold; part of a record in one direction that is the
-/// test.
+/// Speed backwards over the fastest, below which it creeps in a hold; part of a record one way that is the test.
 inline constexpr double kCreepOfHold = 1e-3, kLeastOneWay = 0.6;
-/// Errors of the mean of a recorded speed by which phases differ: its integral is cut where it wanders most.
-/// Logarithm of the ratio of speeds that are the same: a rest between them is a hold.
+/// Errors of the mean of a recorded speed by which phases differ: its integral is cut where it wanders most. Logarithm
+/// of the ratio of speeds that are the same: a rest between them is a hold. Samples in which friction may answer a
+/// step.
 inline constexpr double kSpeedsOfNoise = 8, kSameSpeed = 0.3;
+inline constexpr std::size_t kAnswerOfStep = 10;
 /// Time and length, over those of the sliding on either side, of what a drive does between two speeds (overshoot, a
 /// pause): it is simulated as it was, but makes no step. Larger: short slides between long ones are lost.
 inline constexpr double kPassageBeside = 0.1;

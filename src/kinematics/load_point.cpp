@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <utility>
 
 #include "limits.hpp"
 #include "motion_channels.hpp"
+#include "recording_faults.hpp"
 #include "statistics/piecewise_lines.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/statistics/quantiles.hpp"
@@ -143,6 +145,36 @@ void drop_ends_of(Trace& trace, std::size_t head, std::size_t tail) {
   trace.steps = steps_within(trace.steps, head, trace.size());
 }
 
+/// Lone samples, marker values and what a loose plug leaves of friction take no part. Behind a change of speed a lone
+/// sample may be the answer, of which few samples were taken. Few samples: nothing is known of what is usual.
+void leave_out_faults(Trace& trace, Motion& motion) {
+  const ChannelOutline friction(trace.friction), speed(trace.velocity);
+  const ChannelFaults faults = find_channel_faults(friction, speed, false);
+  const auto answers = [&](const SampleSpan& span) {
+    return std::any_of(motion.load_point.begin(), motion.load_point.end(), [&](const LoadPointPhase& phase) {
+      const auto at = std::upper_bound(trace.time.begin(), trace.time.end(), phase.begin) - trace.time.begin();
+      const auto first = static_cast<std::size_t>(at);
+      return span.end + kAnswerOfStep > first && span.begin < first + kAnswerOfStep;
+    });
+  };
+  std::vector<SampleSpan> spans;
+  for (const auto* found : {&faults.markers, &faults.spikes, &faults.frozen})
+    std::copy_if(found->begin(), found->end(), std::back_inserter(spans), [&](const auto& s) { return !answers(s); });
+  if (spans.empty()) return;
+  std::sort(spans.begin(), spans.end(), [](const auto& a, const auto& b) { return a.begin < b.begin; });
+  bridge(spans, trace.friction);
+  motion.faults.assign(trace.size(), 0);
+  std::size_t samples = 0;
+  for (const SampleSpan& span : spans) {
+    samples += span.size();
+    std::fill(motion.faults.begin() + static_cast<std::ptrdiff_t>(span.begin),
+              motion.faults.begin() + static_cast<std::ptrdiff_t>(span.end), SampleFault::friction);
+  }
+  motion.notes.push_back(fmt::format(
+      "friction: {} {} left out, the first at {:.6g} s: far from all beside {}, or one value again and again", samples,
+      samples == 1 ? "sample" : "samples", trace.time[spans.front().begin], samples == 1 ? "it" : "them"));
+}
+
 /// Friction that opposes sliding is positive.
 void settle_sign(std::vector<double>& friction, std::vector<std::string>& notes) {
   const auto below = std::count_if(friction.begin(), friction.end(), [](double mu) { return mu < 0; });
@@ -181,6 +213,7 @@ Motion motion_of_load_point(Trace trace) {
     while (phase + 1 < motion.load_point.size() && motion.load_point[phase + 1].begin <= trace.time[i]) ++phase;
     trace.velocity[i] = motion.load_point[phase].speed;
   }
+  leave_out_faults(trace, motion);
   if (has_hold(motion.load_point, trace.time) && trace.kind_source != "stated")
     trace.kind = RecordKind::slide_hold_slide;
   require_channels(trace);

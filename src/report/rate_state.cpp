@@ -60,7 +60,7 @@ ReportTable parameter_table_of(const RateStateFit& fit, const Motion& motion) {
   }
   if (std::isfinite(fit.rate_dependence.value))
     table.rows.push_back(row_of("a - b", fit.rate_dependence.value, fit.rate_dependence.std_error,
-                                fit.rate_dependence_lower95, fit.rate_dependence_upper95, "1", ""));
+                                fit.rate_dependence_lower95, fit.rate_dependence_upper95, friction_unit(motion), ""));
   if (std::isfinite(fit.stiffness_ratio)) {
     const double half = 0.25 * std::log(fit.stiffness_ratio_upper95 / fit.stiffness_ratio_lower95);
     table.rows.push_back(row_of("k/k_c", fit.stiffness_ratio, fit.stiffness_ratio * half, fit.stiffness_ratio_lower95,
@@ -315,12 +315,12 @@ std::string verdict_on(const RateStateAnalysis& analysis) {
                        rate);
   std::string text = fmt::format("Steady friction {} with speed (a - b = {})", rises ? "rises" : "falls", rate);
   if (!std::isfinite(fit.stiffness_ratio)) return text + ": sliding is not stable on a machine that is soft enough.";
-  const FitParameter& distance = fit.parameters[2];
-  text += fmt::format(
-      "{} sliding is unstable, and sticks and slips, on a machine softer than {}{} {} 1/um per normal force",
-      rises ? ", and yet" : ":", critical_stiffness_text(fit), fit.states > 1 ? "," : " =",
-      significant(fit.critical_stiffness * kMicrometre, 3));
-  if (!fit.parameters.back().determined || !distance.determined) return text + "; k of this one is not resolved.";
+  const FitParameter &distance = fit.parameters[2], &stiffness = fit.parameters.back();
+  text += fmt::format("{} sliding is unstable, and sticks and slips, on a machine softer than {}{} {} {}{}",
+                      rises ? ", and yet" : ":", critical_stiffness_text(fit), fit.states > 1 ? "," : " =",
+                      significant(fit.critical_stiffness * kMicrometre, 3), stiffness.parameter.unit,
+                      stiffness.parameter.unit == "1/um" ? " per normal force" : "");
+  if (!stiffness.determined || !distance.determined) return text + "; k of this one is not resolved.";
   const std::string ratio = significant(fit.stiffness_ratio, 3);
   if (fit.stiffness_ratio_lower95 > 1)
     return text + fmt::format(". This machine is {} times as stiff: it slides steadily.", ratio);

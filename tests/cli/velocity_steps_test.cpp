@@ -134,6 +134,30 @@ TEST(VelocitySteps, ValuesAreGivenWithoutTheKind) {
   EXPECT_EQ(shop.identify("--kind sliding --bounds k=0.002..0.002/um sliding.csv").status, 2);
 }
 
+/// Without a normal force a, b and k are those of a coefficient times it.
+TEST(VelocitySteps, FrictionInNewtonsHasParametersInNewtons) {
+  const Workshop shop;
+  ASSERT_EQ(shop.identify(kSimulated).status, 0);
+  std::string text = "time_s,Ft [N],lp_disp_um\n";
+  const std::vector<std::string> lines = lines_of(contents(shop / "steps.csv"));
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const std::size_t first = lines[i].find(','), second = lines[i].rfind(',');
+    text += lines[i].substr(0, first) + "," + std::to_string(50 * std::stod(lines[i].substr(second + 1))) +
+            lines[i].substr(first, second - first) + "\n";
+  }
+  shop.write("newtons.csv", text);
+  const Outcome outcome = shop.identify("--json j.json --bounds k=0.1..0.1N/um newtons.csv");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("N/um"));
+  const json result = json::parse(contents(shop / "j.json"));
+  EXPECT_NEAR(parameter(result, "a"), 50 * 0.01, 50 * 3e-4);
+  EXPECT_DOUBLE_EQ(parameter(result, "k"), 0.1);
+  EXPECT_EQ(result["fits"][0]["parameters"][0]["unit"], "N");
+  const Outcome refused = shop.identify("--bounds k=0.1..0.1N/um steps.csv");
+  EXPECT_EQ(refused.status, 3);
+  EXPECT_THAT(refused.err, HasSubstr("friction is a coefficient"));
+}
+
 TEST(VelocitySteps, WhatCannotBeDoneIsSaid) {
   const Workshop shop;
   ASSERT_EQ(shop.identify(kSimulated).status, 0);

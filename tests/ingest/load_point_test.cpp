@@ -76,6 +76,8 @@ TEST_F(LoadPoint, APlainDisplacementIsItsOwnWhereItGoesOneWay) {
   EXPECT_EQ(trace.kind_source, "a displacement in one direction is all the motion recorded");
   EXPECT_DOUBLE_EQ(trace.drive_position.at(10), 2e-5);
   expect_error(write(to_and_fro), {}, "no velocity column", "name the columns");
+  expect_error(write("time_s,Ft [N],Displacement (um)\n0,29,0\n1,30,2\n2,31,4\n"), {}, "no velocity column",
+               "where Displacement (um) is the displacement of a drive");
   ReadOptions named;
   named.columns = {{"x_d", "Displacement"}};
   EXPECT_EQ(read_trace(write(to_and_fro), named).drive_position.size(), 100U);

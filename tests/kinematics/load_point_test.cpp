@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <numbers>
 #include <random>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -80,6 +81,49 @@ TEST(LoadPointMotion, SlidesBetweenOthersAreNoRamps) {
     const auto slides = std::count_if(motion.load_point.begin(), motion.load_point.end(),
                                       [](const LoadPointPhase& phase) { return !phase.on_ramp; });
     EXPECT_EQ(slides, 3) << hunting;
+  }
+}
+
+/// The answer of a stiff machine may be one sample as well: what lies beside a change of speed stays.
+TEST(LoadPointMotion, LoneSamplesAndMarkersTakeNoPart) {
+  Trace trace = steps_at(20, 120);
+  std::mt19937_64 generator(3);
+  std::normal_distribution<double> normal(0, 2e-4);
+  for (const double t : trace.time) trace.drive_position.push_back(2e-6 * t + 18e-6 * std::max(t - 60, 0.0));
+  for (double& mu : trace.friction) mu += normal(generator);
+  const auto at = [](double t) { return static_cast<std::size_t>(std::lround(20 * t)); };
+  const std::vector<std::size_t> spoilt = {at(10), at(20), at(20) + 1, at(20) + 2, at(100)};
+  trace.friction[at(10)] += 0.03;
+  for (std::size_t k = 1; k < 4; ++k) trace.friction[spoilt[k]] = 0;
+  trace.friction[at(100)] = 99;
+  trace.friction[at(60) + 1] += 0.03;
+  const double answer = trace.friction[at(60) + 1];
+  const Motion motion = compute_motion(std::move(trace));
+  ASSERT_EQ(motion.faults.size(), motion.size());
+  for (std::size_t i = 0; i < motion.size(); ++i) {
+    const bool expected = std::find(spoilt.begin(), spoilt.end(), i) != spoilt.end();
+    EXPECT_EQ(motion.has_fault(i, SampleFault::friction), expected) << motion.time[i];
+  }
+  EXPECT_EQ(motion.friction[at(60) + 1], answer);
+  ASSERT_EQ(motion.notes.size(), 1U);
+  EXPECT_NE(motion.notes[0].find("5 samples left out, the first at 10 s"), std::string::npos) << motion.notes[0];
+}
+
+/// Noise alone, and noise that a converter rounds, are left as they are.
+TEST(LoadPointMotion, FrictionWithoutFaultsStaysWhole) {
+  for (const double digit : {0.0, 1e-3, 2e-3}) {
+    Trace trace = steps_at(20, 120);
+    std::mt19937_64 generator(4);
+    std::normal_distribution<double> normal(0, 2e-4);
+    for (const double t : trace.time) trace.drive_position.push_back(2e-6 * t + 18e-6 * std::max(t - 60, 0.0));
+    for (std::size_t i = 0; i < trace.size(); ++i) {
+      const double t = trace.time[i], adapts = t < 60 ? 0 : 0.02 * std::exp(-2 * (t - 60)) - 0.01;
+      const double mu = 0.6 + adapts + normal(generator);
+      trace.friction[i] = digit > 0 ? digit * std::round(mu / digit) : mu;
+    }
+    const Motion motion = compute_motion(std::move(trace));
+    EXPECT_TRUE(motion.faults.empty()) << digit;
+    EXPECT_TRUE(motion.notes.empty()) << digit;
   }
 }
 

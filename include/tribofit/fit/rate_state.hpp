@@ -35,7 +35,8 @@ struct RateStateOptions {
   double from = -std::numeric_limits<double>::infinity();  ///< [s]: nothing before is used
   double to = std::numeric_limits<double>::infinity();     ///< [s]: nothing after is used
   std::vector<GivenParameter> given =
-      {};  ///< starts and bounds of a, b, D_c, k (b_2, D_c2), SI; other kinds refuse them
+      {};                         ///< starts and bounds of a, b, D_c, k (b_2, D_c2), SI; other kinds refuse them
+  bool given_in_newtons = false;  ///< values of a, b or k among them: friction has to be a force
   std::vector<Selection::Stretch> excluded = {};  ///< samples that are left out
   bool each_step = true;                          ///< every step by itself, too
   int threads = 1;                                ///< 0: as many as there are; the result does not depend on it

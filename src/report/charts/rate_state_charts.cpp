@@ -17,6 +17,11 @@ std::string law_name(const RateStateFit& fit) {
   return std::string(to_string(fit.evolution)) + " law";
 }
 
+/// Of friction, as of a.
+const std::string& unit_of_friction(const RateStateAnalysis& analysis) {
+  return analysis.fits[analysis.best].parameters.front().parameter.unit;
+}
+
 void add_step(const RateStateAnalysis& analysis, const RateStateCurve& curve, double origin, double from, double to,
               bool listed, Chart& chart) {
   ChartLine measured{.name = "measured", .stroke = kMeasured, .listed = listed};
@@ -43,7 +48,7 @@ Chart whole_chart(const RateStateAnalysis& analysis) {
                   "its speed changes.",
               .x = {"displacement of the load point", "um"},
               .height = 420};
-  chart.panels[0].axis = {"friction", "1"};
+  chart.panels[0].axis = {"friction", unit_of_friction(analysis)};
   for (const RateStateCurve& curve : analysis.curves) {
     add_step(analysis, curve, 0, -1e300, 1e300, &curve == &analysis.curves.front(), chart);
     const VelocityStep& step = analysis.steps[curve.step];
@@ -65,14 +70,14 @@ Chart zoom_chart_of(const RateStateAnalysis& analysis, const RateStateCurve& cur
                  step.hold > 0 ? fmt::format("Step {}: hold of {} s", curve.step + 1, significant(step.hold, 3))
                                : fmt::format("Step {}: {} to {}", curve.step + 1, sliding_speed_text(step.before),
                                              sliding_speed_text(step.after)),
-                 {"displacement since the step", "um"}, {"friction", "1"});
+                 {"displacement since the step", "um"}, {"friction", unit_of_friction(analysis)});
   add_step(analysis, curve, step.displacement, -kBeforeIt * distance, kBehind * distance, true, chart);
   return chart;
 }
 
-Chart healing_chart(const Healing& healing) {
+Chart healing_chart(const Healing& healing, const std::string& unit) {
   Chart chart = half_chart("t1-healing", "Healing: peak less sliding friction over the time at rest",
-                           {"time at rest", "s"}, {"healing", "1"});
+                           {"time at rest", "s"}, {"healing", unit});
   chart.x.logarithmic = true;
   ChartLine line{.name = "holds", .stroke = dots(Colour::blue, Symbol::circle)};
   for (const HoldMeasures& hold : healing.holds)
@@ -91,7 +96,8 @@ std::vector<Chart> rate_state_charts(const RateStateAnalysis& analysis) {
   for (const RateStateCurve& curve : analysis.curves) {
     if (charts.size() <= kZoomedSteps) charts.push_back(zoom_chart_of(analysis, curve));
   }
-  if (analysis.healing && analysis.healing->holds.size() > 1) charts.push_back(healing_chart(*analysis.healing));
+  if (analysis.healing && analysis.healing->holds.size() > 1)
+    charts.push_back(healing_chart(*analysis.healing, unit_of_friction(analysis)));
   return charts;
 }
 
