@@ -390,8 +390,7 @@ inline constexpr std::size_t kFewestPeriods = 5;
 /// Speed backwards over the fastest, below which it creeps in a hold; part of a record one way that is the test.
 inline constexpr double kCreepOfHold = 1e-3, kLeastOneWay = 0.6;
 /// Errors of the mean of a recorded speed by which phases differ: its integral is cut where it wanders most. Logarithm
-/// of the ratio of speeds that are the same: a rest between them is a hold. Samples in which friction may answer a
-/// step.
+/// of the ratio of speeds that are the same: a rest between them is a hold. Samples within which a step is answered.
 inline constexpr double kSpeedsOfNoise = 8, kSameSpeed = 0.3;
 inline constexpr std::size_t kAnswerOfStep = 10;
 /// Time and length, over those of the sliding on either side, of what a drive does between two speeds (overshoot, a
