@@ -281,7 +281,7 @@ Look look_at(const Looked& at, double from, double shortest = kKinkRest) {
     if (behind[k].squares < best.squares) best = behind[k], filter = filters[k];
   }
   if (sharp.squares > kKinkExplained * best.squares) {
-    const auto left = [&](double width) { return usual(some, {filter.kind, width}, threads).squares; };
+    const auto left = [&](double width) { return usual(some, {filter.kind, width}, at.threads).squares; };
     filter.width = golden_section(left, filter.width / kKinkNext, filter.width * kKinkNext, kCuts).at;
     best = usual(some, filter);
   }
