@@ -33,7 +33,7 @@ std::shared_ptr<const Trace> read_input(const TraceInput& input, const IdentifyO
 /// The stages up to the cycles: read, move, segment. Effects of the motion among options.effects are corrected.
 Identification prepare_trace(const TraceInput& input, const IdentifyOptions& options = {});
 /// The same where the motion of the trace without effects of the motion is known: the corrections are made to a copy of
-/// it, which takes a third of the time.
+/// it, and nothing is looked for again.
 Identification prepare_trace(const TraceInput& input, const IdentifyOptions& options, const Motion& uncorrected);
 
 /// The stage after them, for a trace that prepare_trace() made with the same effects of the motion and the same

@@ -171,10 +171,8 @@ std::vector<double> search_on(const Observations& few, const std::vector<std::si
   const SolverOptions search = context.is_look() ? short_search() : quick_search();
   constexpr std::size_t kMeansToCompare = 2000;  // of as many slips as twice the values that are no means
   std::vector<double> p = best_of_starts(coarse, starts, kMeansToCompare, search, fit);
-  if (context.is_look() && !change) {  // the scatter is taken out by the steps over all values
-    return coarse.solve(slips, p, search).p;
-  }
-  if (!context.is_look()) p = coarse.solve(slips, p, search).p;
+  if (!context.is_look() || !change) p = coarse.solve(slips, p, search).p;
+  if (context.is_look() && !change) return p;  // the scatter is taken out by the step over all values
   Bounds held = coarse.bounds;
   settle(coarse, slips, change, held, p);
   return p;

@@ -73,8 +73,8 @@ inline constexpr double kLoudest = 3;
 /// into another valley.
 inline constexpr double kValuesOfSearch = 100;
 inline constexpr double kValuesOfLook = 50;
-/// Iterations behind which a look compares its starts: of 150 sets of effects twice as many chose better starts for
-/// none.
+/// Iterations behind which a look compares its starts. Fewer: a start that is slow at first is lost; more: time. With
+/// these, 147 sets of effects on each of three simulated records were described as well as with twelve, to 3 %.
 inline constexpr int kIterationsToCompare = 5;
 /// Values of the slips on which it runs where every value counts.
 inline constexpr std::size_t kWholeSlips = 12000, kWholeSlipsOfLook = 8000;

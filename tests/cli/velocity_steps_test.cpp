@@ -27,6 +27,20 @@ double parameter(const json& result, const std::string& name) {
   return std::nan("");
 }
 
+/// The simulated record in other columns. row: makes a line of time, displacement and friction, as they are written.
+template <class Row>
+std::string in_other_columns(const Workshop& shop, const std::string& header, Row&& row) {
+  std::string text = header + "\n";
+  const std::vector<std::string> lines = lines_of(contents(shop / "steps.csv"));
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const std::size_t first = lines[i].find(','), second = lines[i].rfind(',');
+    text += row(lines[i].substr(0, first), lines[i].substr(first + 1, second - first - 1),
+                std::stod(lines[i].substr(second + 1))) +
+            "\n";
+  }
+  return text;
+}
+
 TEST(VelocitySteps, AreSimulatedReadFittedAndReported) {
   const Workshop shop;
   ASSERT_EQ(shop.identify(kSimulated).status, 0);
@@ -53,13 +67,10 @@ TEST(VelocitySteps, AreSimulatedReadFittedAndReported) {
 TEST(VelocitySteps, StressesAndStatedSpeedsGiveTheSame) {
   const Workshop shop;
   ASSERT_EQ(shop.identify(kSimulated).status, 0);
-  std::string text = "Time (s),Shear Stress (MPa),Normal Stress (MPa)\n";
-  const std::vector<std::string> lines = lines_of(contents(shop / "steps.csv"));
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    const std::size_t first = lines[i].find(','), second = lines[i].rfind(',');
-    const double mu = std::stod(lines[i].substr(second + 1));
-    text += lines[i].substr(0, first) + "," + std::to_string(mu * 25) + ",25\n";
-  }
+  const auto row = [](const std::string& time, const std::string&, double mu) {
+    return time + "," + std::to_string(mu * 25) + ",25";
+  };
+  const std::string text = in_other_columns(shop, "Time (s),Shear Stress (MPa),Normal Stress (MPa)", row);
   shop.write("stress.csv", text);
   const Outcome outcome =
       shop.identify("--speed 0s:2um/s,60s:20um/s,80s:2um/s --evolution slip --json j.json stress.csv");
@@ -138,13 +149,10 @@ TEST(VelocitySteps, ValuesAreGivenWithoutTheKind) {
 TEST(VelocitySteps, FrictionInNewtonsHasParametersInNewtons) {
   const Workshop shop;
   ASSERT_EQ(shop.identify(kSimulated).status, 0);
-  std::string text = "time_s,Ft [N],lp_disp_um\n";
-  const std::vector<std::string> lines = lines_of(contents(shop / "steps.csv"));
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    const std::size_t first = lines[i].find(','), second = lines[i].rfind(',');
-    text += lines[i].substr(0, first) + "," + std::to_string(50 * std::stod(lines[i].substr(second + 1))) +
-            lines[i].substr(first, second - first) + "\n";
-  }
+  const auto row = [](const std::string& time, const std::string& displacement, double mu) {
+    return time + "," + std::to_string(mu * 50) + "," + displacement;
+  };
+  const std::string text = in_other_columns(shop, "time_s,Ft [N],lp_disp_um", row);
   shop.write("newtons.csv", text);
   const Outcome outcome = shop.identify("--json j.json --bounds k=0.1..0.1N/um newtons.csv");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
