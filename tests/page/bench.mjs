@@ -1,9 +1,11 @@
 // Times pages in Chromium as a person sees them. usage:
 // node bench.mjs DRIVER CHROMIUM open FILE [TIMES]          a report: until it can be read, and until every chart is drawn
 // node bench.mjs DRIVER CHROMIUM change ADDRESS [CHANGES]   the workbench: from the click on an effect (a third one beside two
-//                                                           others) to the answer shown, and to the whole page updated: every
-//                                                           chart that has been drawn, on the page as it opens, and on one
-//                                                           whose charts have all been looked at
+//                                                           others) to the answer and the charts in view shown, and to the
+//                                                           whole page updated: the charts near the view too, on the page as
+//                                                           it opens, and on one whose charts have all been looked at; then,
+//                                                           after such a change, from a jump to a chart farther down until
+//                                                           it is up to date
 import { pathToFileURL } from "node:url";
 import { lookAtAll } from "./browser.mjs";
 
@@ -76,10 +78,30 @@ async function change(address, changes) {
     const { times, next } = await timesOf(page, names, changes, from);
     from = next;
     const slowest = times.reduce((a, b) => (b.drawn > a.drawn ? b : a));
-    console.log(`page ${state} (${charts} charts drawn): answer shown after ${show(times.map((t) => t.shown))}, whole page after ` +
+    console.log(`page ${state} (${charts} charts drawn): answer and charts in view after ${show(times.map((t) => t.shown))}, whole page after ` +
       `${show(times.map((t) => t.drawn))}; ${times.length} clicks, the slowest on ${slowest.name}`);
   }
+  const jumps = [];
+  for (let k = 0; k < 10; ++k) {
+    await click(page, names[k]);
+    jumps.push(await jump(page));
+    await page.evaluate(() => scrollTo(0, 0));
+    await page.waitForFunction(drawn);
+    await click(page, names[k]);
+  }
+  console.log(`a chart far from view is up to date ${show(jumps)} after a jump to it; ${jumps.length} times`);
 }
+
+/** Jumps to the first chart that was left as it was; resolves with when no chart in view is left so [ms]. */
+const jump = (page) => page.evaluate(() => new Promise((resolve) => {
+  const began = performance.now();
+  waiting.find((item) => item.shown !== "").plot.scrollIntoView();
+  const look = () => {
+    if (!waiting.some((item) => isWithin(item, 0))) return resolve(performance.now() - began);
+    setTimeout(look, 1);
+  };
+  setTimeout(look, 0);
+}));
 
 await (what === "open" ? open(pathToFileURL(where).href, Number(count || 5)) : change(where, Number(count || 40)));
 await browser.close();

@@ -16,6 +16,7 @@ const unmarked = (text) => String(text).replace(/([_^])\{([^}]*)\}/g, "$1$2");
 const titleOf = (axis) => (axis.unit ? `${axis.quantity} [${axis.unit}]` : axis.quantity);
 
 const letterWidth = 7.5;
+const symbolsOfLine = 16; // tell a joined line from the next; one at every point costs a third of the drawing
 
 /** A title on as many lines as so many pixels ask for. */
 function brokenTitle(text, room = innerWidth - 90) {
@@ -86,7 +87,8 @@ function tracesOfLine(chart, line) {
   const joined = line.joined !== false;
   const trace = { ...common, mode: line.symbol ? (joined ? "lines+markers" : "markers") : "lines", name: plain(line.name),
     y: line.y, line: { color: styles.colours[line.colour], dash: styles.dashes[line.dash], width: line.width },
-    marker: { symbol: line.symbol || "circle", size: line.size || 6, color: styles.colours[line.colour] },
+    marker: { symbol: line.symbol || "circle", size: line.size || 6, color: styles.colours[line.colour],
+      ...(joined && !line.bars ? { maxdisplayed: symbolsOfLine } : {}) },
     showlegend: line.listed !== false, ...hoverOf(chart, line.panel, line.bars) };
   if (chart.x.names) trace.customdata = line.x.map((x) => plain(chart.x.names[Math.round(x)] || ""));
   if (line.bars) {
@@ -276,7 +278,7 @@ function makeChart(chart) {
   const plot = make("div", { className: "plot", id: chart.id, tabindex: "0", role: "img",
     "aria-label": `Chart: ${chart.title}. Keys: plus and minus zoom, arrows move, 0 shows all. ` +
       "Its numbers stand in the table below it." });
-  const item = { plot, switched: new Map(), drawn: false, shown: "", title: make("h3"), note: make("p"),
+  const item = { plot, switched: new Map(), shown: "", title: make("h3"), note: make("p"),
     legend: make("div", { className: "legend" }), tools: make("div", { className: "tools" }) };
   item.figure = make("figure", {}, make("figcaption", {}, item.title, item.note), plot, item.legend, item.tools,
     numbersOf(chart.id, () => headerOf(item.chart), () => rowsOf(item.chart)));
@@ -307,7 +309,7 @@ function fillLegend(item) {
 }
 
 function toggle(item, group, button) {
-  if (!item.drawn) draw(item);
+  bringUpToDate(item);
   const on = button.getAttribute("aria-pressed") !== "true";
   button.setAttribute("aria-pressed", String(on));
   item.switched.set(group, on ? true : "legendonly");
@@ -320,7 +322,7 @@ const axesOf = (item, letter) => Object.keys(item.plot._fullLayout)
 
 /** Zooms about the middle (factor below 1: closer) and moves by a part of the width. */
 function zoom(item, factor, move = 0) {
-  if (!item.drawn) draw(item);
+  bringUpToDate(item);
   const change = {};
   for (const name of axesOf(item, "x")) {
     const [low, high] = item.plot._fullLayout[name].range;
@@ -331,7 +333,7 @@ function zoom(item, factor, move = 0) {
 }
 
 function showAll(item) {
-  if (!item.drawn) draw(item);
+  bringUpToDate(item);
   const change = {};
   for (const name of [...axesOf(item, "x"), ...axesOf(item, "y")]) {
     if (item.ranges[name]) change[`${name}.range`] = [...item.ranges[name]];

@@ -1,10 +1,10 @@
-// When charts are drawn: after the words, what is in view first, a few at a time.
+// When charts are drawn. A report shows its words first, then what is in view, then the rest, a few charts at a time. A page
+// that changes under the hand shows words and charts in view together, in one frame, and leaves charts far from view until
+// they come near: each costs as much as all of its words.
 
 let waiting = []; // charts not drawn yet, or not as they are now
 let isDrawing = false;
-/** Whether charts that nobody has come near yet are drawn as well. A page that changes under the hand leaves them: each costs
- * as much as all of its words. */
-let drawsFarCharts = true;
+let changesUnderHand = false; // whether this page does
 
 const drawingTime = 50; // ms: a page that answers later than that feels slow
 
@@ -14,11 +14,15 @@ function draw(item) {
   fitBelow(item.layout, item.chart, item.layout.width || item.plot.clientWidth);
   Plotly.react(item.plot, item.traces, item.layout, { responsive: true, displaylogo: false, displayModeBar: false,
     doubleClick: "reset", scrollZoom: false });
-  item.drawn = true;
   item.shown = item.described;
 }
 
-/** Has a chart drawn once the words are on the screen. */
+/** Draws a chart that is not as it is described: before something is done with it. */
+function bringUpToDate(item) {
+  if (item.shown !== item.described) draw(item);
+}
+
+/** Has a chart drawn in its turn. */
 function drawSoon(item) {
   if (!waiting.includes(item)) waiting.push(item);
   beginDrawing();
@@ -28,7 +32,8 @@ function beginDrawing() {
   if (isDrawing) return;
   isDrawing = true;
   delete document.documentElement.dataset.drawn;
-  requestAnimationFrame(() => setTimeout(drawWaiting, 0));
+  if (changesUnderHand) queueMicrotask(drawWaiting); // when the change that asks for it is made
+  else requestAnimationFrame(() => setTimeout(drawWaiting, 0));
 }
 
 /** Whether a chart is in view, or so many pixels above or below. */
@@ -37,20 +42,20 @@ function isWithin(item, margin) {
   return box.bottom > -margin && box.top < innerHeight + margin;
 }
 
-/** Charts to draw, in their order: those in view, then those drawn before, near, or of a page that draws all. */
+/** Charts to draw, in their order: those in view, then those near, or of a page that draws all. */
 function chartsDue() {
   waiting = waiting.filter((item) => item.plot.isConnected);
   const inView = waiting.filter((item) => isWithin(item, 0));
-  return [...inView, ...waiting.filter((item) => !inView.includes(item) &&
-    (drawsFarCharts || item.drawn || isWithin(item, innerHeight)))];
+  return [...inView, ...waiting.filter((item) => !inView.includes(item) && (!changesUnderHand || isWithin(item, innerHeight)))];
 }
 
-/** Draws what is due. A few charts at a time, so that the page stays alive: one by one it would be laid out and painted as
- * often. */
+/** Draws what is due. Of what is not in view a few charts at a time, so that the page stays alive: one by one it would be
+ * laid out and painted as often. */
 function drawWaiting() {
   const due = chartsDue(), began = performance.now();
+  const atOnce = changesUnderHand ? due.filter((item) => isWithin(item, 0)).length : 1;
   let drawn = 0;
-  while (drawn < due.length && (drawn === 0 || performance.now() - began < drawingTime)) draw(due[drawn++]);
+  while (drawn < due.length && (drawn < atOnce || performance.now() - began < drawingTime)) draw(due[drawn++]);
   if (drawn < due.length) {
     setTimeout(drawWaiting, 0);
   } else {

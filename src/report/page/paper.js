@@ -2,7 +2,7 @@
 
 /** Saves the chart as on white paper, with title and legend, wide enough for print. */
 function savePicture(item, format) {
-  if (!item.drawn) draw(item);
+  bringUpToDate(item);
   const height = Math.max(560, item.chart.height);
   const [data, whole] = onPaper(() => [tracesOf(item.chart), layoutOf(item.chart)]);
   data.forEach((trace) => { trace.visible = item.switched.get(trace.legendgroup) ?? trace.visible; });

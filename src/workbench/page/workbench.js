@@ -194,7 +194,7 @@ function addBrushes(box) {
 }
 
 function setBrush(item, on) {
-  if (!item.drawn) draw(item);
+  bringUpToDate(item);
   item.brush.setAttribute("aria-pressed", String(on));
   item.brush.textContent = on ? "Drag over the chart …" : "Leave out a stretch";
   Plotly.relayout(item.plot, { dragmode: on ? "select" : "zoom", selectdirection: "h", selections: [] });
@@ -229,7 +229,7 @@ async function drawByHand(values) {
   if (dragging !== asking) return;
   const item = [...chartItems.values()].find((one) => one.chart.id.endsWith("-law") && one.plot.isConnected);
   if (!item) return;
-  if (!item.drawn) draw(item);
+  bringUpToDate(item);
   const name = "by hand", at = item.plot.data.findIndex((trace) => trace.name === name);
   if (at >= 0) {
     await Plotly.restyle(item.plot, { x: [curve.x], y: [curve.y] }, [at]);
@@ -369,7 +369,7 @@ const folded = (title, ...parts) => make("details", {}, make("summary", {}, titl
 
 async function startWorkbench(main) {
   document.body.classList.add("workbench");
-  drawsFarCharts = false;
+  changesUnderHand = true;
   const controls = make("aside", { id: "workbench-controls", "aria-label": "Model" });
   main.replaceChildren(strip(), controls, make("div", { id: "workbench-shown" },
     make("p", { id: "workbench-trouble", className: "warning", role: "alert", hidden: "" }), diagnosisBox(),
