@@ -60,6 +60,9 @@ inline constexpr double kSamplesPerPeriod = 8, kSamplesPerRefined = 16;
 /// Samples of a spectrum.
 inline constexpr std::size_t kFewestOfSpectrum = 16, kFewestReduced = 8;
 
+/// Values from which a transform is made of two of half the length, side by side: below, starting a thread costs more.
+inline constexpr std::size_t kFewestOfHalves = 1 << 14;
+
 // ---- local derivatives
 
 /// Squares that a window leaves over the usual ones, from which there is a kink in it, and over those of a window

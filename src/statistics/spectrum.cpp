@@ -1,6 +1,7 @@
 #include "tribofit/statistics/spectrum.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -11,6 +12,7 @@
 #include "golden_section.hpp"
 #include "limits.hpp"
 #include "reductions.hpp"
+#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 
 namespace tribofit {
@@ -30,11 +32,34 @@ class Hann {
   std::complex<double> phase_{1, 0}, step_;
 };
 
-std::vector<std::complex<double>> transform(std::vector<double> padded) {
+std::vector<std::complex<double>> transform(const std::vector<double>& values) {
   Eigen::FFT<double> fft;
   fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
   std::vector<std::complex<double>> lines;
-  fft.fwd(lines, padded);
+  fft.fwd(lines, values);
+  return lines;
+}
+
+/// The same from the transforms of the even and of the odd values, which are made side by side (G. C. Danielson,
+/// C. Lanczos, J. Franklin Inst. 233 (1942) 365).
+std::vector<std::complex<double>> transform_of_halves(const std::vector<double>& values, int threads) {
+  const std::size_t n = values.size();
+  if (n % 4 != 0 || n < kFewestOfHalves) return transform(values);
+  std::array<std::vector<std::complex<double>>, 2> half;
+  run_tasks(2, threads, [&](std::size_t k) {
+    std::vector<double> own(n / 2);
+    for (std::size_t i = 0; i < own.size(); ++i) own[i] = values[2 * i + k];
+    half[k] = transform(own);
+  });
+  std::vector<std::complex<double>> lines(n / 2 + 1);
+  const std::complex<double> step = std::polar(1.0, -(2 * std::numbers::pi) / static_cast<double>(n));
+  std::complex<double> turn{1, 0};
+  for (std::size_t k = 0; k <= n / 4; ++k) {
+    const std::complex<double> even = half[0][k], odd = turn * half[1][k];
+    lines[k] = even + odd;
+    lines[n / 2 - k] = std::conj(even - odd);
+    turn *= step;
+  }
   return lines;
 }
 
@@ -89,7 +114,7 @@ double block_transmission(double frequency, double block) {
 
 }  // namespace
 
-Spectrum amplitude_spectrum(std::span<const double> signal, double step) {
+Spectrum amplitude_spectrum(std::span<const double> signal, double step, int threads) {
   Spectrum spectrum;
   if (signal.size() < 4 || !(step > 0)) return spectrum;
   const std::size_t size = fast_length(signal.size());
@@ -97,11 +122,11 @@ Spectrum amplitude_spectrum(std::span<const double> signal, double step) {
   std::vector<double> padded(size, 0.0);
   Hann window(signal.size());
   for (std::size_t i = 0; i < signal.size(); ++i) padded[i] = window.next() * (signal[i] - mean);
-  const auto lines = transform(std::move(padded));
+  const auto lines = transform_of_halves(padded, threads);
   spectrum.bin_width = 1 / (static_cast<double>(size) * step);
   spectrum.amplitude.reserve(lines.size());
   for (const auto& line : lines) {
-    spectrum.amplitude.push_back(4 * std::abs(line) / static_cast<double>(signal.size()));
+    spectrum.amplitude.push_back(4 * std::sqrt(std::norm(line)) / static_cast<double>(signal.size()));
   }
   return spectrum;
 }
@@ -180,8 +205,8 @@ std::vector<double> products_at_every_lag(std::span<const double> x, std::span<c
   std::vector<double> first(size), second(size);
   std::copy(x.begin(), x.end(), first.begin());
   std::reverse_copy(y.begin(), y.end(), second.begin());
-  std::vector<std::complex<double>> lines = transform(std::move(first));
-  const std::vector<std::complex<double>> factors = transform(std::move(second));
+  std::vector<std::complex<double>> lines = transform(first);
+  const std::vector<std::complex<double>> factors = transform(second);
   for (std::size_t k = 0; k < lines.size(); ++k) lines[k] *= factors[k];
   Eigen::FFT<double> fft;
   fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);

@@ -267,14 +267,15 @@ TEST(Catalogue, EffectsSayTheSameOfAWholeSlipAsOfEverySample) {
   // Slow turns, a sample that is far on, and turns as fast as samples show.
   std::vector<double> time, velocity, angle;
   for (int i = 0; i < 6000; ++i) {
-    time.push_back(1e-4 * i);
+    time.push_back(i < 4500 ? 1e-4 * i : 0.45 + 5e-3 * (i - 4500));
     velocity.push_back(0.05 + 0.04 * std::sin(0.01 * i));
     angle.push_back(0.7 + (i < 3000 ? 1e-3 * i : i < 4000 ? 40 + 0.02 * i : 200 - 0.9 * i));
   }
   Slip slip;
   slip.time = time, slip.velocity = velocity, slip.angle = angle;
   slip.mean_load = 50;
-  const std::vector<double> p = {0.05, 0.9, 0.02, -2};
+  slip.from_stick = true, slip.break_away_time = 0.01;
+  const std::vector<double> p = {0.05, 40, 0.002, -2};
   std::vector<std::string> with_both;
   for (const std::string& key : catalogue_keys()) {
     const FrictionModel model(ExponentialLaw{}, {make_effect(key)});
@@ -288,9 +289,16 @@ TEST(Catalogue, EffectsSayTheSameOfAWholeSlipAsOfEverySample) {
         for (std::size_t i = 0; i < whole.size(); ++i)
           ASSERT_NEAR(whole[i], effect.modulate(q, slip.at(i, velocity[i]), 0.4), 1e-12) << key << " " << i;
       }
+      if constexpr (hooks::AddsToReadings<E, double>) {
+        with_both.push_back(key);
+        std::vector<double> whole(time.size(), 0.4);
+        effect.add_to_readings(q, slip, std::span<double>(whole));
+        for (std::size_t i = 0; i < whole.size(); ++i)
+          ASSERT_NEAR(whole[i], effect.add_to_reading(q, slip.at(i, velocity[i]), 0.4), 1e-14) << key << " " << i;
+      }
     });
   }
-  EXPECT_EQ(with_both, (std::vector<std::string>{"runout", "disc-pattern"}));
+  EXPECT_EQ(with_both, (std::vector<std::string>{"runout", "disc-pattern", "ringing", "interference"}));
 }
 
 TEST(Catalogue, HasOneEffectForWhatOthersAskFor) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
+#include <cstdint>
 #include <numbers>
 
 #include "../kinematics/stick_slip_truth.hpp"
@@ -27,6 +29,25 @@ TEST(Spectrum, AmplitudeOfASineOnABin) {
   EXPECT_NEAR(s.amplitude[100], 3, 1e-3);
   EXPECT_NEAR(s.amplitude[101], 1.5, 1e-3);  // Hann: half in the neighbours
   EXPECT_NEAR(s.amplitude[0], 0, 1e-3);
+}
+
+TEST(Spectrum, LongOnesAreTheSumsThatDefineThem) {
+  std::vector<double> signal(40000);
+  std::uint32_t state = 1;
+  double mean = 0;
+  for (double& x : signal)
+    mean += (x = static_cast<double>(state = 1664525 * state + 1013904223) / 4294967296.0) / 40000;
+  const Spectrum s = amplitude_spectrum(signal, 1), shared = amplitude_spectrum(signal, 1, 2);
+  ASSERT_EQ(s.amplitude.size(), 20001u);  // no padding: 40000 has no prime factor above five
+  EXPECT_EQ(s.amplitude, shared.amplitude);
+  for (const std::size_t k : {1u, 2u, 777u, 9999u, 10000u, 10001u, 15000u, 19999u, 20000u}) {
+    std::complex<double> sum = 0;
+    for (std::size_t i = 0; i < signal.size(); ++i) {
+      const double turn = two_pi * static_cast<double>(i) / 40000, window = std::pow(std::sin(turn / 2), 2);
+      sum += window * (signal[i] - mean) * std::polar(1.0, -turn * static_cast<double>(k));
+    }
+    EXPECT_NEAR(s.amplitude[k], 4 * std::abs(sum) / 40000, 1e-12) << k;
+  }
 }
 
 TEST(Spectrum, UpToAFrequencyItIsThatOfTheWhole) {

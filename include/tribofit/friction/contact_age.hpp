@@ -16,20 +16,26 @@ namespace tribofit::detail {
 /// m/(1 + d b/m): exact where r is constant, to second order in d elsewhere, and 1/r for long intervals.
 template <class T>
 T aged_over(const T& theta, double interval, const T& before, const T& now) {
-  using std::exp;
-  const T a = 0.5 * interval * (before + now);
+  const T renewals = 0.5 * interval * (before + now);
   const T d = 0.5 * interval * (now - before);
-  const T e = exp(-a);
-  T mean, weighted_mean;
-  constexpr double kSmall = 0.02;  // below, the closed forms lose their digits
-  if (scalar_part(a) > kSmall) {
-    mean = (1.0 - e) / a;
-    weighted_mean = ((a - 2.0) + (a + 2.0) * e) / (a * a * a);
+  const double a = scalar_part(renewals), e = std::exp(-a);
+  double mean, mean_slope, weighted, weighted_slope;  // slopes: derivatives in A
+  constexpr double kSmall = 0.02;                     // below, the closed forms lose their digits
+  if (a > kSmall) {
+    mean = (1 - e) / a;
+    mean_slope = (e - mean) / a;
+    weighted = ((a - 2) + (a + 2) * e) / (a * a * a);
+    weighted_slope = (1 - (a + 1) * e) / (a * a * a) - 3 * weighted / a;
   } else {
-    mean = 1.0 - a * (1.0 / 2 - a * (1.0 / 6 - a * (1.0 / 24)));
-    weighted_mean = 1.0 / 6 - a * (1.0 / 12 - a * (1.0 / 40));
+    mean = 1 - a * (1.0 / 2 - a * (1.0 / 6 - a * (1.0 / 24)));
+    mean_slope = -1.0 / 2 + a * (1.0 / 3 - a * (1.0 / 8));
+    weighted = 1.0 / 6 - a * (1.0 / 12 - a * (1.0 / 40));
+    weighted_slope = -1.0 / 12 + a * (1.0 / 20);
   }
-  return e * theta + interval * mean * mean / (mean + d * weighted_mean);
+  // Each depends on A alone: one product gives it its derivatives.
+  const T change = renewals - a;
+  const T m = mean + mean_slope * change;
+  return (e - e * change) * theta + interval * m * m / (m + d * (weighted + weighted_slope * change));
 }
 
 /// Age with which the contacts came to rest before the stick that precedes `slip` [s]; 0 where that was not recorded.

@@ -54,6 +54,8 @@ struct Motion;
 ///        the same, a whole slip at a time; an effect that has both says the same by either, and is the faster by this
 ///   T add_to_reading(p, const SlidingState<T>&, const T& mu)
 ///        what the sensor adds to it
+///   void add_to_readings(p, const Slip&, std::span<T> mu)
+///        the same, a whole slip at a time, as modulate_all is to modulate
 ///   void filter_reading(p, const Slip&, const T& level, std::span<T> mu)
 ///        what the sensor makes of a whole slip; `level`: signed friction at break-away, up to which the spring pulled
 ///        at slip.stick_slope

@@ -368,7 +368,9 @@ void evaluate(const FrictionModel& model, const T* p, const Slip& slip, std::spa
     } else if constexpr (hooks::Modulates<E, T>) {
       for (std::size_t i = 0; i < n; ++i) mu[i] = effect.modulate(q, slip.at(i, velocity[i]), mu[i]);
     }
-    if constexpr (hooks::AddsToReading<E, T>) {
+    if constexpr (hooks::AddsToReadings<E, T>) {
+      effect.add_to_readings(q, slip, mu);
+    } else if constexpr (hooks::AddsToReading<E, T>) {
       for (std::size_t i = 0; i < n; ++i) mu[i] = effect.add_to_reading(q, slip.at(i, velocity[i]), mu[i]);
     }
     if constexpr (hooks::FiltersReading<E, T>) {

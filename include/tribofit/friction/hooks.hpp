@@ -52,6 +52,10 @@ concept AddsToReading = requires(const E e, const T* p, const SlidingState<T>& x
   e.add_to_reading(p, x, mu);
 };
 template <class E, class T>
+concept AddsToReadings = requires(const E e, const T* p, const Slip& s, std::span<T> mu) {
+  e.add_to_readings(p, s, mu);
+};
+template <class E, class T>
 concept FiltersReading = requires(const E e, const T* p, const Slip& s, const T& level, std::span<T> mu) {
   e.filter_reading(p, s, level, mu);
 };

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "tribofit/friction/effect.hpp"
+#include "tribofit/friction/rotation.hpp"
 
 namespace tribofit {
 
@@ -50,6 +51,12 @@ struct Interference {
   T add_to_reading(const T* p, const SlidingState<T>& x, const T& mu) const {
     using std::cos;
     return mu + p[0] * cos(2 * std::numbers::pi * p[1] * x.time + p[2]);
+  }
+
+  template <class T>
+  void add_to_readings(const T* p, const Slip& slip, std::span<T> mu) const {
+    WaveOverTime<T> wave(2 * std::numbers::pi * p[1], p[2]);
+    for (std::size_t i = 0; i < mu.size(); ++i) mu[i] = mu[i] + p[0] * wave.at(slip.time[i]);
   }
 
   /// The level comes from a straight line through the second half of the stick, over which a line of high frequency

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "tribofit/friction/effect.hpp"
+#include "tribofit/friction/rotation.hpp"
 
 namespace tribofit {
 
@@ -60,6 +61,18 @@ struct Ringing {
     if (!(x.since_break_away >= 0)) return mu;
     const T w = 2 * std::numbers::pi * p[1];
     return mu + x.direction * p[0] * exp(-p[2] * w * x.since_break_away) * cos(w * x.since_break_away + p[3]);
+  }
+  template <class T>
+  void add_to_readings(const T* p, const Slip& slip, std::span<T> mu) const {
+    using std::exp;
+    if (!slip.from_stick) return;
+    const T w = 2 * std::numbers::pi * p[1];
+    const T amplitude = slip.direction * p[0], decay = -p[2] * w;
+    WaveOverTime<T> wave(w, p[3]);
+    for (std::size_t i = 0; i < mu.size(); ++i) {
+      const double since = slip.time[i] - slip.break_away_time;
+      if (since >= 0) mu[i] = mu[i] + amplitude * exp(decay * since) * wave.at(since);
+    }
   }
 };
 
