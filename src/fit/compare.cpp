@@ -7,6 +7,7 @@
 #include "tribofit/fit/fit.hpp"
 #include "tribofit/friction/evaluate.hpp"
 #include "tribofit/statistics/distributions.hpp"
+#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit {
@@ -83,8 +84,8 @@ Curve law_curve(const Fit& fit, std::span<const double> velocity) {
   curve.velocity.assign(velocity.begin(), velocity.end());
   const std::size_t n = p.size();
   // Two samples of a slip at constant speed that begins in steady state; a law of the disc angle stands for its mean
-  // over a turn.
-  const int turns = fit.model.needs().angle ? 24 : 1;
+  // over a turn: twelve angles give it for every wave up to the eleventh.
+  const int turns = fit.model.needs().angle ? 12 : 1;
   const auto steady = [&](const std::vector<double>& q, double v) {
     const double time[] = {-1, 0}, speed[] = {v, v};
     double mu[2], sum = 0;
@@ -124,21 +125,22 @@ Curve law_curve(const Fit& fit, std::span<const double> velocity) {
   return curve;
 }
 
-std::vector<double> predict(const Fit& fit, const Motion& motion, const Segmentation& segmentation,
-                            std::size_t record) {
+std::vector<double> predict(const Fit& fit, const Motion& motion, const Segmentation& segmentation, std::size_t record,
+                            int threads) {
   std::vector<double> mu(motion.size(), std::numeric_limits<double>::quiet_NaN());
   const std::vector<double> p = fit.values();
   if (p.empty()) return mu;
   const Observations observations = observed_for(fit, motion, segmentation);
   const Record one = {&motion, &segmentation};
   const FullRecord samples(std::span(&one, 1), observations, fit.model.needs());
-  FullRecord::Made made;
-  for (const auto& range : observations.slips) {
+  run_tasks(observations.slips.size(), threads, [&](std::size_t k) {
+    const auto& range = observations.slips[k];
+    FullRecord::Made made;
     Slip slip = samples.slip(range, made);
     slip.record = record;
     evaluate<double>(fit.model, p.data(), slip, slip.velocity,
                      std::span<double>(mu).subspan(range.samples.begin, range.samples.size()));
-  }
+  });
   return mu;
 }
 
