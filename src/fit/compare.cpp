@@ -77,6 +77,18 @@ double held_out_std_error(const Fit& fit) {
   return standard_error_of_mean(squares).std_error / (2 * fit.error.held_out_rmse);
 }
 
+namespace {
+
+/// Angles whose mean is that over a turn of the disc.
+int angles_of_turn(const FrictionModel& model) {
+  if (!model.needs().angle) return 1;
+  constexpr int kOfWaves = 12, kOfFormula = 48;  // exact up to the eleventh wave; effects of the catalogue have six
+  const auto is_formula = [](const Effect& effect) { return describe(effect).group == EffectGroup::user; };
+  return std::any_of(model.effects().begin(), model.effects().end(), is_formula) ? kOfFormula : kOfWaves;
+}
+
+}  // namespace
+
 Curve law_curve(const Fit& fit, std::span<const double> velocity) {
   Curve curve;
   const std::vector<double> p = fit.values();
@@ -84,8 +96,8 @@ Curve law_curve(const Fit& fit, std::span<const double> velocity) {
   curve.velocity.assign(velocity.begin(), velocity.end());
   const std::size_t n = p.size();
   // Two samples of a slip at constant speed that begins in steady state; a law of the disc angle stands for its mean
-  // over a turn: twelve angles give it for every wave up to the eleventh.
-  const int turns = fit.model.needs().angle ? 12 : 1;
+  // over a turn.
+  const int turns = angles_of_turn(fit.model);
   const auto steady = [&](const std::vector<double>& q, double v) {
     const double time[] = {-1, 0}, speed[] = {v, v};
     double mu[2], sum = 0;
@@ -133,13 +145,16 @@ std::vector<double> predict(const Fit& fit, const Motion& motion, const Segmenta
   const Observations observations = observed_for(fit, motion, segmentation);
   const Record one = {&motion, &segmentation};
   const FullRecord samples(std::span(&one, 1), observations, fit.model.needs());
-  run_tasks(observations.slips.size(), threads, [&](std::size_t k) {
-    const auto& range = observations.slips[k];
+  const std::span<const Observations::SlipObservation> slips = observations.slips;
+  run_tasks((slips.size() + kSlipsOfPart - 1) / kSlipsOfPart, threads, [&](std::size_t k) {
+    const FrictionModel model(fit.model);  // its formulas must not be shared between threads
     FullRecord::Made made;
-    Slip slip = samples.slip(range, made);
-    slip.record = record;
-    evaluate<double>(fit.model, p.data(), slip, slip.velocity,
-                     std::span<double>(mu).subspan(range.samples.begin, range.samples.size()));
+    for (const auto& range : slips.subspan(k * kSlipsOfPart, std::min(kSlipsOfPart, slips.size() - k * kSlipsOfPart))) {
+      Slip slip = samples.slip(range, made);
+      slip.record = record;
+      evaluate<double>(model, p.data(), slip, slip.velocity,
+                       std::span<double>(mu).subspan(range.samples.begin, range.samples.size()));
+    }
   });
   return mu;
 }

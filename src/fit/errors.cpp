@@ -122,7 +122,6 @@ ErrorsOfSlips errors_of(std::span<const Observations::SlipObservation> slips, co
 
 SampleErrors sample_errors(const FrictionModel& model, const std::vector<double>& p, const FullRecord& record,
                            const Observations& observations, int threads) {
-  constexpr std::size_t kSlipsOfPart = 32;
   const std::span<const Observations::SlipObservation> slips(observations.slips);
   std::vector<ErrorsOfSlips> parts((slips.size() + kSlipsOfPart - 1) / kSlipsOfPart);
   run_tasks(parts.size(), threads, [&](std::size_t k) {

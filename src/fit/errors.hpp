@@ -36,6 +36,9 @@ class FullRecord {
   std::vector<Channel> channels_;  // of each record
 };
 
+/// Slips that one thread takes at a time.
+inline constexpr std::size_t kSlipsOfPart = 32;
+
 /// Samples of a slip, or of a piece of one, over which friction can be a parabola and noise is taken about it.
 std::size_t noise_stretch(std::size_t samples);
 

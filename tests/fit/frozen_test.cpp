@@ -91,6 +91,45 @@ TEST(FrozenFit, ItsParametersReferToItsOwnLoad) {
   EXPECT_LT(worst, 1e-3);
 }
 
+/// A formula keeps what it is given between two steps of its evaluation: threads must not share one.
+TEST(Predictions, OfAFormulaAreTheSameForAnyNumberOfThreads) {
+  synthetic::Options options;
+  options.cycles = 200;
+  const synthetic::Record record = synthetic::make(kExponential, kTruth, options);
+  const FrictionModel model(ExponentialLaw{}, {Formula("hump = a*exp(-((v-v0)/w)^2); a=0.01, v0=30mm/s, w=8mm/s")});
+  const Fit fit = fit_with(model, record);
+  const std::vector<double> alone = predict(fit, record.motion, record.segmentation, 0, 1);
+  for (const int threads : {2, 8}) {
+    const std::vector<double> shared = predict(fit, record.motion, record.segmentation, 0, threads);
+    for (std::size_t i = 0; i < alone.size(); ++i)
+      ASSERT_TRUE(shared[i] == alone[i] || (std::isnan(shared[i]) && std::isnan(alone[i]))) << threads << " " << i;
+  }
+}
+
+/// Over a turn a wave of any order averages out, and what presses at one angle keeps its share.
+TEST(LawCurve, OfAFormulaOfTheAngleIsItsMeanOverATurn) {
+  const auto mean_of = [](const std::string& formula, const std::vector<double>& values) {
+    Fit fit;
+    fit.model = FrictionModel(ExponentialLaw{}, {Formula(formula)});
+    std::vector<double> p = kTruth;
+    p.insert(p.end(), values.begin(), values.end());
+    for (const double value : p) {
+      fit.parameters.emplace_back();
+      fit.parameters.back().value = value;
+    }
+    fit.covariance.assign(p.size() * p.size(), 0.0);
+    const double steady = law_curve(fit, std::vector<double>{0.03}).mu[0];
+    fit.model = FrictionModel(ExponentialLaw{}, {Formula("c = a; a=0.01")});
+    fit.parameters.resize(kTruth.size() + 1);
+    fit.parameters.back().value = 0;
+    fit.covariance.assign((kTruth.size() + 1) * (kTruth.size() + 1), 0.0);
+    return steady - law_curve(fit, std::vector<double>{0.03}).mu[0];
+  };
+  EXPECT_NEAR(mean_of("wave = a*cos(12*angle+0.3); a=0.01", {0.01}), 0, 1e-12);
+  // 0.01 sqrt(pi) 0.15 / (2 pi)
+  EXPECT_NEAR(mean_of("bump = a*exp(-((angle-1)/0.15)^2); a=0.01", {0.01}), 0.01 * 0.042314, 1e-6);
+}
+
 /// The reading mu - m_s a/N follows N(t) where it was recorded, in the fit as in its errors.
 TEST(FrozenFit, AMassBelowTheSensorSeesTheLoadAsRecorded) {
   synthetic::Options options;

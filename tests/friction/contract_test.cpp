@@ -267,7 +267,7 @@ TEST(Catalogue, EffectsSayTheSameOfAWholeSlipAsOfEverySample) {
   // Slow turns, a sample that is far on, and turns as fast as samples show.
   std::vector<double> time, velocity, angle;
   for (int i = 0; i < 6000; ++i) {
-    time.push_back(i < 4500 ? 1e-4 * i : 0.45 + 5e-3 * (i - 4500));
+    time.push_back(i < 4500 ? 1e-4 * i : i < 4800 ? 0.45 + 9e-4 * (i - 4500) : 0.72 + 5e-3 * (i - 4800));
     velocity.push_back(0.05 + 0.04 * std::sin(0.01 * i));
     angle.push_back(0.7 + (i < 3000 ? 1e-3 * i : i < 4000 ? 40 + 0.02 * i : 200 - 0.9 * i));
   }
@@ -291,10 +291,14 @@ TEST(Catalogue, EffectsSayTheSameOfAWholeSlipAsOfEverySample) {
       }
       if constexpr (hooks::AddsToReadings<E, double>) {
         with_both.push_back(key);
-        std::vector<double> whole(time.size(), 0.4);
-        effect.add_to_readings(q, slip, std::span<double>(whole));
-        for (std::size_t i = 0; i < whole.size(); ++i)
-          ASSERT_NEAR(whole[i], effect.add_to_reading(q, slip.at(i, velocity[i]), 0.4), 1e-14) << key << " " << i;
+        for (const auto& [direction, from_stick] : {std::pair{1, true}, std::pair{-1, true}, std::pair{1, false}}) {
+          Slip one = slip;
+          one.direction = direction, one.from_stick = from_stick;
+          std::vector<double> whole(time.size(), 0.4);
+          effect.add_to_readings(q, one, std::span<double>(whole));
+          for (std::size_t i = 0; i < whole.size(); ++i)
+            ASSERT_NEAR(whole[i], effect.add_to_reading(q, one.at(i, velocity[i]), 0.4), 1e-14) << key << " " << i;
+        }
       }
     });
   }

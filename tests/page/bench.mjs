@@ -95,7 +95,7 @@ async function change(address, changes) {
 /** Jumps to the first chart that was left as it was; resolves with when no chart in view is left so [ms]. */
 const jump = (page) => page.evaluate(() => new Promise((resolve) => {
   const began = performance.now();
-  waiting.find((item) => item.shown !== "").plot.scrollIntoView();
+  (waiting.find((item) => item.shown !== "") || waiting[0]).plot.scrollIntoView();
   const look = () => {
     if (!waiting.some((item) => isWithin(item, 0))) return resolve(performance.now() - began);
     setTimeout(look, 1);

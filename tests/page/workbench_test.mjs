@@ -198,8 +198,21 @@ async function chartsUpToDate(address) {
   await change(page, () => page.check("#effect-frictional-lag"));
   const after = await charts(), wrong = wrongOf(after);
   assert.ok(!wrong.includes("t1-law") && wrong.includes("t1-error-time"), `left as they were: ${wrong}`);
-  await page.locator("#t1-error-time").scrollIntoViewIfNeeded();
-  await page.waitForFunction(() => document.documentElement.dataset.drawn === "all" && !waiting.some((item) => item.plot.id === "t1-error-time"));
+  await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
+  assert.deepEqual(wrongOf(await charts()), [], "on paper");
+  await page.evaluate(() => dispatchEvent(new Event("afterprint")));
+  await change(page, () => page.uncheck("#effect-viscous"));
+  assert.ok(wrongOf(await charts()).includes("t1-error-time"));
+  const switched = await page.evaluate(() => {
+    document.querySelector("figure:has(#t1-error-time) .legend button").click();
+    return document.getElementById("t1-error-time").data[0].visible;
+  });
+  assert.equal(switched, "legendonly", "what is switched is the model in view");
+  assert.ok(!wrongOf(await charts()).includes("t1-error-time"));
+  await page.emulateMedia({ colorScheme: "dark" });
+  assert.equal(await page.locator(".verdict").count(), 1);
+  await page.locator("#t1-error-speed").scrollIntoViewIfNeeded();
+  await page.waitForFunction(() => !waiting.some((item) => item.plot.id === "t1-error-speed"));
   await lookAtAll(page);
   assert.deepEqual(wrongOf(await charts()), []);
   assert.notEqual(await page.evaluate(() => JSON.stringify(document.getElementById("t1-error-time").data[0].y)), error);

@@ -32,21 +32,26 @@ TEST(Spectrum, AmplitudeOfASineOnABin) {
 }
 
 TEST(Spectrum, LongOnesAreTheSumsThatDefineThem) {
-  std::vector<double> signal(40000);
-  std::uint32_t state = 1;
-  double mean = 0;
-  for (double& x : signal)
-    mean += (x = static_cast<double>(state = 1664525 * state + 1013904223) / 4294967296.0) / 40000;
-  const Spectrum s = amplitude_spectrum(signal, 1), shared = amplitude_spectrum(signal, 1, 2);
-  ASSERT_EQ(s.amplitude.size(), 20001u);  // no padding: 40000 has no prime factor above five
-  EXPECT_EQ(s.amplitude, shared.amplitude);
-  for (const std::size_t k : {1u, 2u, 777u, 9999u, 10000u, 10001u, 15000u, 19999u, 20000u}) {
-    std::complex<double> sum = 0;
-    for (std::size_t i = 0; i < signal.size(); ++i) {
-      const double turn = two_pi * static_cast<double>(i) / 40000, window = std::pow(std::sin(turn / 2), 2);
-      sum += window * (signal[i] - mean) * std::polar(1.0, -turn * static_cast<double>(k));
+  // None is padded: no length has a prime factor above five. The last two are no multiples of eight and of four.
+  for (const std::size_t n : {40000u, 37500u, 33750u}) {
+    std::vector<double> signal(n);
+    std::uint32_t state = 1;
+    double mean = 0;
+    for (double& x : signal) {
+      x = static_cast<double>(state = 1664525 * state + 1013904223) / 4294967296.0;
+      mean += x / static_cast<double>(n);
     }
-    EXPECT_NEAR(s.amplitude[k], 4 * std::abs(sum) / 40000, 1e-12) << k;
+    const Spectrum s = amplitude_spectrum(signal, 1), shared = amplitude_spectrum(signal, 1, 2);
+    ASSERT_EQ(s.amplitude.size(), n / 2 + 1);
+    EXPECT_EQ(s.amplitude, shared.amplitude);
+    for (const std::size_t k : {std::size_t{1}, n / 50, n / 4 - 1, n / 4, n / 4 + 1, n / 3, n / 2 - 1, n / 2}) {
+      std::complex<double> sum = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        const double turn = two_pi * static_cast<double>(i) / static_cast<double>(n);
+        sum += std::pow(std::sin(turn / 2), 2) * (signal[i] - mean) * std::polar(1.0, -turn * static_cast<double>(k));
+      }
+      EXPECT_NEAR(s.amplitude[k], 4 * std::abs(sum) / static_cast<double>(n), 1e-12) << n << " " << k;
+    }
   }
 }
 

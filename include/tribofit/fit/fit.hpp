@@ -194,7 +194,8 @@ struct Curve {
 Curve law_curve(const Fit& fit, std::span<const double> velocity);
 
 /// Model friction at every sample of the slips (NaN in stick and outside), signed, at the N0 and T0 of the fit.
-/// record: which of the records that were fitted together this is, from 0; it has phases of its own.
+/// record: which of the records that were fitted together this is, from 0; it has phases of its own. threads: 0 for as
+/// many as there are; the result is the same for any number.
 std::vector<double> predict(const Fit& fit, const Motion& motion, const Segmentation& segmentation,
                             std::size_t record = 0, int threads = 1);
 

@@ -55,7 +55,7 @@ struct Motion;
 ///   T add_to_reading(p, const SlidingState<T>&, const T& mu)
 ///        what the sensor adds to it
 ///   void add_to_readings(p, const Slip&, std::span<T> mu)
-///        the same, a whole slip at a time, as modulate_all is to modulate
+///        the same, a whole slip at a time and faster; beside add_to_reading, never alone
 ///   void filter_reading(p, const Slip&, const T& level, std::span<T> mu)
 ///        what the sensor makes of a whole slip; `level`: signed friction at break-away, up to which the spring pulled
 ///        at slip.stick_slope

@@ -52,7 +52,7 @@ concept AddsToReading = requires(const E e, const T* p, const SlidingState<T>& x
   e.add_to_reading(p, x, mu);
 };
 template <class E, class T>
-concept AddsToReadings = requires(const E e, const T* p, const Slip& s, std::span<T> mu) {
+concept AddsToReadings = AddsToReading<E, T> && requires(const E e, const T* p, const Slip& s, std::span<T> mu) {
   e.add_to_readings(p, s, mu);
 };
 template <class E, class T>

@@ -7,7 +7,7 @@
 namespace tribofit {
 
 /// Cosine and sine of an angle that turns by little from one sample to the next: each follows from the one before it by
-/// a rotation, which is a fifth of the work of the functions, and wrong by one rounding more for every turn.
+/// a rotation, which is less work than the functions, and wrong by one rounding more for every turn.
 class Rotation {
  public:
   Rotation() = default;
@@ -16,10 +16,14 @@ class Rotation {
   double cosine() const { return cosine_; }
   double sine() const { return sine_; }
 
+  /// Turns up to here need no function: the next terms are below rounding.
+  static constexpr double kSmall = 0.3;
+
   void turn(double by) {
-    constexpr double kSmall = 0.3;  // the next terms are below rounding
     const double x = by * by;
-    double c = 1 - x * (1.0 / 2 - x * (1.0 / 24 - x * (1.0 / 720 - x * (1.0 / 40320 - x * (1.0 / 3628800)))));
+    double c =
+        1 - x * (1.0 / 2 -
+                 x * (1.0 / 24 - x * (1.0 / 720 - x * (1.0 / 40320 - x * (1.0 / 3628800 - x * (1.0 / 479001600))))));
     double s =
         by * (1 - x * (1.0 / 6 - x * (1.0 / 120 - x * (1.0 / 5040 - x * (1.0 / 362880 - x * (1.0 / 39916800))))));
     if (!(std::abs(by) < kSmall)) c = std::cos(by), s = std::sin(by);
@@ -32,7 +36,7 @@ class Rotation {
   double cosine_ = 1, sine_ = 0;
 };
 
-/// cos(w t + phase) at times in ascending order. w [rad/s]; t [s].
+/// cos(w t + phase) at one time after the other, with derivatives in w and phase. w [rad/s]; t [s].
 template <class T>
 class WaveOverTime {
  public:
@@ -40,12 +44,13 @@ class WaveOverTime {
 
   T at(double time) {
     const T angle = w_ * time + phase_;
+    const double by = scalar_part(w_) * (time - time_);
     // Now and then by the functions: roundings of a long record do not add up.
     constexpr int kTurns = 128;
-    if (turns_ % kTurns == 0) {
+    if (turns_ % kTurns == 0 || !(std::abs(by) < Rotation::kSmall)) {
       rotation_ = Rotation(scalar_part(angle));
     } else {
-      rotation_.turn(scalar_part(w_) * (time - time_));
+      rotation_.turn(by);
     }
     ++turns_;
     time_ = time;

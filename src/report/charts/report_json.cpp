@@ -48,6 +48,7 @@ Json styles_json() {
   for (const ShadeStyle& shade : kShades) {
     json["shades"][shade.name] = {{"meaning", shade.meaning}, {"fill", rgba(shade.paint)}};
   }
+  json["most_symbols"] = kMostSymbols;
   json["heat"] = kHeatColours;
   json["diverging"] = kDivergingColours;
   add_members(json, "grid", kGridColour, "axis", kAxisColour, "text", kTextColour, "disc", kDiscColour, "sticking",

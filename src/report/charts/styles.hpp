@@ -73,6 +73,9 @@ inline constexpr std::array<SymbolStyle, 7> kSymbols = {
      {"triangle-down", 3, {{{-1.25, 0.9}, {1.25, 0.9}, {0, -1.2}}}},
      {"x", 4, {{{-0.9, -0.9}, {0.9, 0.9}, {-0.9, 0.9}, {0.9, -0.9}}}}}};
 
+/// Symbols of a joined line, at most: more would hide it.
+inline constexpr std::size_t kMostSymbols = 40;
+
 /// By the value of Shade.
 struct ShadeStyle {
   std::string_view name, meaning;

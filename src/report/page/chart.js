@@ -16,7 +16,6 @@ const unmarked = (text) => String(text).replace(/([_^])\{([^}]*)\}/g, "$1$2");
 const titleOf = (axis) => (axis.unit ? `${axis.quantity} [${axis.unit}]` : axis.quantity);
 
 const letterWidth = 7.5;
-const symbolsOfLine = 16; // tell a joined line from the next; one at every point costs a third of the drawing
 
 /** A title on as many lines as so many pixels ask for. */
 function brokenTitle(text, room = innerWidth - 90) {
@@ -88,7 +87,7 @@ function tracesOfLine(chart, line) {
   const trace = { ...common, mode: line.symbol ? (joined ? "lines+markers" : "markers") : "lines", name: plain(line.name),
     y: line.y, line: { color: styles.colours[line.colour], dash: styles.dashes[line.dash], width: line.width },
     marker: { symbol: line.symbol || "circle", size: line.size || 6, color: styles.colours[line.colour],
-      ...(joined && !line.bars ? { maxdisplayed: symbolsOfLine } : {}) },
+      ...(joined && !line.bars ? { maxdisplayed: styles.most_symbols } : {}) },
     showlegend: line.listed !== false, ...hoverOf(chart, line.panel, line.bars) };
   if (chart.x.names) trace.customdata = line.x.map((x) => plain(chart.x.names[Math.round(x)] || ""));
   if (line.bars) {
@@ -270,6 +269,7 @@ function chartFigure(chart) {
   item.note.textContent = prose(chart.note);
   item.plot.style.height = `${chart.height}px`;
   fillLegend(item);
+  item.numbers.fill();
   drawSoon(item);
   return item.figure;
 }
@@ -278,10 +278,10 @@ function makeChart(chart) {
   const plot = make("div", { className: "plot", id: chart.id, tabindex: "0", role: "img",
     "aria-label": `Chart: ${chart.title}. Keys: plus and minus zoom, arrows move, 0 shows all. ` +
       "Its numbers stand in the table below it." });
-  const item = { plot, switched: new Map(), shown: "", title: make("h3"), note: make("p"),
+  const item = { plot, switched: new Map(), shown: "", near: false, title: make("h3"), note: make("p"),
     legend: make("div", { className: "legend" }), tools: make("div", { className: "tools" }) };
-  item.figure = make("figure", {}, make("figcaption", {}, item.title, item.note), plot, item.legend, item.tools,
-    numbersOf(chart.id, () => headerOf(item.chart), () => rowsOf(item.chart)));
+  item.numbers = numbersOf(chart.id, () => headerOf(item.chart), () => rowsOf(item.chart));
+  item.figure = make("figure", {}, make("figcaption", {}, item.title, item.note), plot, item.legend, item.tools, item.numbers);
   addTools(item, chart.title);
   plot.addEventListener("keydown", (event) => onKey(event, item));
   chartItems.set(chart.id, item);

@@ -4,7 +4,7 @@
 
 let waiting = []; // charts not drawn yet, or not as they are now
 let isDrawing = false;
-let changesUnderHand = false; // whether this page does
+let changesUnderHand = false;
 
 const drawingTime = 50; // ms: a page that answers later than that feels slow
 
@@ -17,9 +17,9 @@ function draw(item) {
   item.shown = item.described;
 }
 
-/** Draws a chart that is not as it is described: before something is done with it. */
+/** Draws a chart that waits for it: before something is done with it. */
 function bringUpToDate(item) {
-  if (item.shown !== item.described) draw(item);
+  if (waiting.includes(item)) draw(item);
 }
 
 /** Has a chart drawn in its turn. */
@@ -42,29 +42,36 @@ function isWithin(item, margin) {
   return box.bottom > -margin && box.top < innerHeight + margin;
 }
 
-/** Charts to draw, in their order: those in view, then those near, or of a page that draws all. */
+/** Charts to draw: those in view, and those near, or of a page that draws all. */
 function chartsDue() {
   waiting = waiting.filter((item) => item.plot.isConnected);
   const inView = waiting.filter((item) => isWithin(item, 0));
-  return [...inView, ...waiting.filter((item) => !inView.includes(item) && (!changesUnderHand || isWithin(item, innerHeight)))];
+  const near = waiting.filter((item) => !inView.includes(item) &&
+    (!changesUnderHand || item.near || isWithin(item, innerHeight)));
+  return { inView, near };
 }
 
-/** Draws what is due. Of what is not in view a few charts at a time, so that the page stays alive: one by one it would be
- * laid out and painted as often. */
+/** Draws what is in view at once, where the page changes under the hand; the rest a few charts at a time, so that the page
+ * stays alive: one by one it would be laid out and painted as often. */
 function drawWaiting() {
-  const due = chartsDue(), began = performance.now();
-  const atOnce = changesUnderHand ? due.filter((item) => isWithin(item, 0)).length : 1;
+  const { inView, near } = chartsDue(), began = performance.now();
+  const now = changesUnderHand && inView.length > 0 ? inView : [...inView, ...near];
   let drawn = 0;
-  while (drawn < due.length && (drawn < atOnce || performance.now() - began < drawingTime)) draw(due[drawn++]);
-  if (drawn < due.length) {
-    setTimeout(drawWaiting, 0);
-  } else {
-    isDrawing = false;
-    document.documentElement.dataset.drawn = "all";
+  try {
+    while (drawn < now.length && (drawn === 0 || now === inView || performance.now() - began < drawingTime)) draw(now[drawn++]);
+  } finally {
+    if (drawn < inView.length + near.length) {
+      setTimeout(drawWaiting, 0);
+    } else {
+      isDrawing = false;
+      document.documentElement.dataset.drawn = "all";
+    }
   }
 }
 
 /** A screen ahead: who scrolls finds the chart drawn. */
 const comingNear = new IntersectionObserver((entries) => {
-  if (entries.some((entry) => entry.isIntersecting) && chartsDue().length > 0) beginDrawing();
+  for (const entry of entries) chartItems.get(entry.target.id).near = entry.isIntersecting;
+  const due = chartsDue();
+  if (due.inView.length + due.near.length > 0) beginDrawing();
 }, { rootMargin: "100% 0px" });

@@ -78,14 +78,14 @@ function headerItems(report) {
     make("nav", { "aria-label": "Sections" }, make("ul", {}, ...links)), facts(report.facts)].filter((part) => part !== null);
 }
 
-let lastShown = null;
-darkScreen.addEventListener("change", () => lastShown && showReport(lastShown.main, lastShown.report));
+let showAgain = () => {}; // in the colours of the screen as it is then
+darkScreen.addEventListener("change", () => showAgain());
 
 /** Shows a report; what stands there already is brought up to date. */
 function showReport(main, report) {
   givenStyles = report.styles;
   setTheme(darkScreen.matches);
-  lastShown = { main, report };
+  showAgain = () => showReport(main, report);
   document.title = `${report.title} – ${report.kind}`;
   const before = new Map([...main.querySelectorAll(":scope > section")].map((element) => [element.id, element]));
   const sections = report.sections.map((section) => {

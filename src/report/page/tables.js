@@ -88,11 +88,12 @@ function save(name, content) {
   setTimeout(() => URL.revokeObjectURL(url), 10000);
 }
 
-/** The numbers of a chart behind a switch: made anew when it is opened, cut after `most` rows, whole as CSV. */
+/** The numbers of a chart behind a switch: made when it is opened, and anew by its fill(); cut after `most` rows, whole as
+ * CSV. */
 function numbersOf(name, headerOf, rowsOf) {
   const most = 500;
   const details = make("details", { className: "numbers" }, make("summary", {}, "Numbers of this chart"));
-  details.addEventListener("toggle", () => {
+  details.fill = () => {
     while (details.childElementCount > 1) details.lastChild.remove();
     if (!details.open) return;
     const header = headerOf(), rows = rowsOf();
@@ -105,6 +106,7 @@ function numbersOf(name, headerOf, rowsOf) {
         `Save all ${rows.length} rows as CSV`),
       table("", header, rows.slice(0, most).map((row) => row.map(text)), numeric));
     if (rows.length > most) details.append(make("p", { className: "soft" }, `The first ${most} rows are shown.`));
-  });
+  };
+  details.addEventListener("toggle", details.fill);
   return details;
 }

@@ -11,7 +11,6 @@ namespace {
 constexpr double kPointsPerPixel = 0.45;  // a column of a journal is about half as wide as the page
 constexpr double kTolerance = 0.02;       // [mm]: half a dot at 600 dots per inch
 constexpr double kSymbolCell = 0.08;      // [mm]
-constexpr std::size_t kMostSymbols = 40;  // of a joined line; more would hide it
 
 bool finite(const Point& p) {
   return std::isfinite(p.x) && std::isfinite(p.y);

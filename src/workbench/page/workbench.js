@@ -106,6 +106,7 @@ async function show(full = false, passing = false) {
     const answer = await ask("/api/show", { page: workbench.page, turn, full, passing, choice: workbench.choice }, asking.signal);
     if (answer.superseded || turn !== workbench.turn) return;
     workbench.rung = answer.rung;
+    if (!passing) dragging = null; // a line by hand that comes now would stand on the chart of the fit
     showTrouble(null);
     workbench.formulaPending = false;
     remember(passing);
@@ -177,6 +178,7 @@ function showPicture(report) {
     ...(trace ? [{ ...rest(trace), id: "health", title: "Health of the data" }] : [])];
   const box = document.getElementById("workbench-picture");
   showReport(box, { ...report, sections: sections.filter((section) => section.items.length > 0) });
+  showAgain = () => showPicture(report);
   document.getElementById("workbench-facts").replaceChildren(make("summary", {}, "The record and the result in numbers"),
     ...box.querySelectorAll(":scope > .verdict, :scope > .facts"));
   addBrushes(box);
@@ -228,7 +230,11 @@ async function drawByHand(values) {
   }
   if (dragging !== asking) return;
   const item = [...chartItems.values()].find((one) => one.chart.id.endsWith("-law") && one.plot.isConnected);
-  if (!item) return;
+  if (item && isWithin(item, innerHeight)) await addLineByHand(item, curve);
+  document.documentElement.dataset.byHand = JSON.stringify(values);
+}
+
+async function addLineByHand(item, curve) {
   bringUpToDate(item);
   const name = "by hand", at = item.plot.data.findIndex((trace) => trace.name === name);
   if (at >= 0) {
@@ -237,7 +243,6 @@ async function drawByHand(values) {
     await Plotly.addTraces(item.plot, { type: "scatter", mode: "lines", name, x: curve.x, y: curve.y, hoverinfo: "name",
       line: { color: styles.colours.red, dash: "dot", width: 3 } });
   }
-  document.documentElement.dataset.byHand = JSON.stringify(values);
 }
 
 let changing = 0;
