@@ -159,6 +159,7 @@ async function firstScreen(address) {
   const plot = page.locator("#t1-record");
   await plot.scrollIntoViewIfNeeded();
   await page.locator("figure:has(#t1-record) .brush").click();
+  await page.evaluate(() => redraw(chartItems.get("t1-record"), null)); // as a refined fit does
   const area = await plot.locator(".nsewdrag").first().boundingBox();
   await change(page, async () => {
     await page.mouse.move(area.x + 0.4 * area.width, area.y + 30);

@@ -259,7 +259,7 @@ function chartFigure(chart) {
   item.described = described;
   item.chart = chart;
   item.traces = tracesOf(chart);
-  item.layout = layoutOf(chart);
+  item.layout = { ...layoutOf(chart), ...item.drag };
   item.ranges = Object.fromEntries(Object.entries(item.layout).filter(([, part]) => part && part.range)
     .map(([name, part]) => [name, [...part.range]])); // the library writes the present range into the layout
   for (const trace of item.traces) {
@@ -278,7 +278,7 @@ function makeChart(chart) {
   const plot = make("div", { className: "plot", id: chart.id, tabindex: "0", role: "img",
     "aria-label": `Chart: ${chart.title}. Keys: plus and minus zoom, arrows move, 0 shows all. ` +
       "Its numbers stand in the table below it." });
-  const item = { plot, switched: new Map(), shown: "", near: false, title: make("h3"), note: make("p"),
+  const item = { plot, switched: new Map(), shown: "", near: false, drag: {}, title: make("h3"), note: make("p"),
     legend: make("div", { className: "legend" }), tools: make("div", { className: "tools" }) };
   item.numbers = numbersOf(chart.id, () => headerOf(item.chart), () => rowsOf(item.chart));
   item.figure = make("figure", {}, make("figcaption", {}, item.title, item.note), plot, item.legend, item.tools, item.numbers);

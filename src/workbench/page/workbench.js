@@ -1,11 +1,12 @@
-// The workbench: controls (controls.js) beside the report of the model they choose (include/tribofit/workbench/server.hpp). Every
-// change asks the server for the picture of the new choice; answers that come late are dropped.
+// The workbench: controls (controls.js, brush.js) beside the report of the model they choose
+// (include/tribofit/workbench/server.hpp). Every change asks the server for the picture of the new choice; answers that come
+// late are dropped.
 
 const workbench = {
   token: new URLSearchParams(location.search).get("token") || "",
   page: Array.from(crypto.getRandomValues(new Uint8Array(8)), (b) => b.toString(16).padStart(2, "0")).join(""),
   turn: 0, asking: null, settling: 0, polling: 0, choice: null, rung: null, world: null, changedAt: 0,
-  plausible: new Map(), unfolded: new Set(), past: [], shownChoice: null, formulaPending: false,
+  plausible: new Map(), unfolded: new Set(), rungs: [], plan: null, past: [], shownChoice: null, formulaPending: false,
 };
 
 /** Asks the server; a refusal is thrown as what it says. */
@@ -114,6 +115,7 @@ async function show(full = false, passing = false) {
     if (!full || !sameNames(answer.rung)) showParameters(answer.rung);
     else updateParameters(answer.rung);
     showPicture(answer.report);
+    workbench.rungs = answer.rungs;
     showRungs(answer.rungs); // in the colours of the report
     if (!full) document.documentElement.dataset.answerMs = (performance.now() - workbench.changedAt).toFixed(0);
     document.documentElement.dataset.workbench = answer.rung.full ? "settled" : "shown";
@@ -178,42 +180,15 @@ function showPicture(report) {
     ...(trace ? [{ ...rest(trace), id: "health", title: "Health of the data" }] : [])];
   const box = document.getElementById("workbench-picture");
   showReport(box, { ...report, sections: sections.filter((section) => section.items.length > 0) });
-  showAgain = () => showPicture(report);
+  showAgain = () => {
+    showPicture(report);
+    showRungs(workbench.rungs);
+    const plan = document.getElementById("workbench-plan");
+    if (plan && workbench.plan) fillSection(plan, workbench.plan);
+  };
   document.getElementById("workbench-facts").replaceChildren(make("summary", {}, "The record and the result in numbers"),
     ...box.querySelectorAll(":scope > .verdict, :scope > .facts"));
   addBrushes(box);
-}
-
-/** On charts over the time of the record a stretch can be marked and left out. */
-function addBrushes(box) {
-  for (const item of chartItems.values()) {
-    const overRecord = item.chart.x.quantity === "time" && item.chart.x.unit === "s";
-    if (!overRecord || !box.contains(item.figure) || item.brush) continue;
-    item.brush = make("button", { type: "button", "aria-pressed": "false", className: "brush", title: "Drag over the chart to leave a stretch of time out",
-      onclick: () => setBrush(item, item.brush.getAttribute("aria-pressed") !== "true") }, "Leave out a stretch");
-    item.tools.prepend(item.brush);
-  }
-}
-
-function setBrush(item, on) {
-  bringUpToDate(item);
-  item.brush.setAttribute("aria-pressed", String(on));
-  item.brush.textContent = on ? "Drag over the chart …" : "Leave out a stretch";
-  Plotly.relayout(item.plot, { dragmode: on ? "select" : "zoom", selectdirection: "h", selections: [] });
-  item.plot.removeAllListeners("plotly_selected");
-  if (!on) return;
-  item.plot.on("plotly_selected", (event) => {
-    const range = event && event.range && Object.entries(event.range).find(([name]) => name.startsWith("x"));
-    setBrush(item, false);
-    if (range) leaveOut(range[1].map((t) => Number(t.toPrecision(6))).sort((a, b) => a - b));
-  });
-}
-
-function leaveOut(stretch) {
-  if (!(stretch[0] < stretch[1])) return;
-  workbench.choice.excluded.push([Math.max(0, stretch[0]), stretch[1]]);
-  document.getElementById("workbench-selection").fill();
-  changed();
 }
 
 let dragging = null;
@@ -308,6 +283,7 @@ function showFinding(state) {
   const rows = state.ladder.map((step) => [step.added ? `+ ${step.added}` : `${state.found.law} law`,
     `${number(step.held_out_rmse)} ± ${number(step.held_out_std_error, 2)}`]);
   const section = make("section", { id: "workbench-plan" });
+  workbench.plan = state.plan;
   if (state.plan) fillSection(section, state.plan);
   box.replaceChildren(table("Ladder of the diagnosis", ["Rung", "Held-out error"], [...rows, ["Noise floor", number(state.floor_rmse)]], [1]),
     make("div", { className: "row" },
