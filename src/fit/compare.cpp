@@ -82,7 +82,7 @@ namespace {
 /// Angles whose mean is that over a turn of the disc.
 int angles_of_turn(const FrictionModel& model) {
   if (!model.needs().angle) return 1;
-  constexpr int kOfWaves = 12, kOfFormula = 48;  // exact up to the eleventh wave; effects of the catalogue have six
+  constexpr int kOfWaves = 12, kOfFormula = 48;  // exact up to the eleventh wave; effects of the catalogue have four
   const auto is_formula = [](const Effect& effect) { return describe(effect).group == EffectGroup::user; };
   return std::any_of(model.effects().begin(), model.effects().end(), is_formula) ? kOfFormula : kOfWaves;
 }

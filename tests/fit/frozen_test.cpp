@@ -106,7 +106,7 @@ TEST(Predictions, OfAFormulaAreTheSameForAnyNumberOfThreads) {
   }
 }
 
-/// Over a turn a wave of any order averages out, and what presses at one angle keeps its share.
+/// Over a turn a wave averages out, also one of a dozen periods, and what presses at one angle keeps its share.
 TEST(LawCurve, OfAFormulaOfTheAngleIsItsMeanOverATurn) {
   const auto mean_of = [](const std::string& formula, const std::vector<double>& values) {
     Fit fit;

@@ -258,20 +258,25 @@ function chartFigure(chart) {
   if (item.described === described && (item.shown === described || waiting.includes(item))) return item.figure;
   item.described = described;
   item.chart = chart;
-  item.traces = tracesOf(chart);
-  item.layout = { ...layoutOf(chart), ...item.drag };
+  prepare(item);
   item.ranges = Object.fromEntries(Object.entries(item.layout).filter(([, part]) => part && part.range)
     .map(([name, part]) => [name, [...part.range]])); // the library writes the present range into the layout
-  for (const trace of item.traces) {
-    if (item.switched.has(trace.legendgroup)) trace.visible = item.switched.get(trace.legendgroup);
-  }
   item.title.textContent = symbols(chart.title);
   item.note.textContent = prose(chart.note);
   item.plot.style.height = `${chart.height}px`;
-  fillLegend(item);
   item.numbers.fill();
   drawSoon(item);
   return item.figure;
+}
+
+/** What the library draws of a chart, in the colours of now, with what was switched and how it is dragged. */
+function prepare(item, layout = {}) {
+  item.traces = tracesOf(item.chart);
+  item.layout = { ...layoutOf(item.chart), ...item.drag, ...layout };
+  for (const trace of item.traces) {
+    if (item.switched.has(trace.legendgroup)) trace.visible = item.switched.get(trace.legendgroup);
+  }
+  fillLegend(item);
 }
 
 function makeChart(chart) {

@@ -21,12 +21,7 @@ const drawnItems = () => [...chartItems.values()].filter((item) => item.plot.isC
 
 /** Draws a chart anew, as wide as given or as its place. */
 function redraw(item, width) {
-  item.traces = tracesOf(item.chart);
-  item.layout = { ...layoutOf(item.chart), ...item.drag, ...(width ? { width, autosize: false } : { autosize: true }) };
-  for (const trace of item.traces) {
-    if (item.switched.has(trace.legendgroup)) trace.visible = item.switched.get(trace.legendgroup);
-  }
-  fillLegend(item);
+  prepare(item, width ? { width, autosize: false } : { autosize: true });
   draw(item);
 }
 
