@@ -203,7 +203,7 @@ Solution joint_estimate(FitContext& context, Fit& fit) {
     out.result.converged = true;
     if (change && look) held.lower[change->time] = held.upper[change->time] = out.result.p[change->time];
     if (look) {
-      refine_look(context, held, out.result.p);
+      out.residuals.emplace(refine_look(context, held, out.result.p));
       return out;
     }
     if (refine(context, change, held, out.result.p)) return out;

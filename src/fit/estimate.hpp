@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "fit_context.hpp"
@@ -13,6 +14,7 @@ struct Solution {
   std::vector<double> start;  ///< of the first search
   CycleExtremes extremes;     ///< by per-cycle extremes only
   bool has_levels = true;     ///< false: the extremes of too few cycles are known
+  std::optional<ModelResiduals> residuals;  ///< of all slips with the whitening of the context, where they are known
   const std::vector<double>& values() const { return result.p; }
 };
 

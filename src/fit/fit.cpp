@@ -233,11 +233,12 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
 
   FitContext context = context_of(model, records, observations, instruments, options);
   report_moved_starts(context, fit);
-  const Solution solution = estimate(context, fit);
+  Solution solution = estimate(context, fit);
   if (!solution.has_levels) return fit;
   const std::vector<double>& p = solution.values();
 
-  const ModelResiduals residuals = context.residuals(all_slips(observations));
+  if (!solution.residuals) solution.residuals.emplace(context.residuals(all_slips(observations)));
+  const ModelResiduals& residuals = *solution.residuals;
   const NormalEquations equations = normal_equations(residuals, observations, p);
   if (!equations.finite) {
     return failed_fit(std::move(fit),

@@ -234,12 +234,12 @@ const std::vector<ModelResiduals::Block>* ModelResiduals::white_blocks(const dou
   last_.p.clear();  // and copies of this for other threads stay small
   std::vector<Block> blocks = std::exchange(last_.blocks, {});
   if (!compressed(p, true, blocks)) return nullptr;
-  const auto added = corrections(blocks);
+  std::vector<Eigen::RowVectorXd> added = corrections(blocks);
   for (std::size_t k = 0; k < added.size(); ++k) {
     const auto columns = static_cast<Eigen::Index>(n + 1);
     blocks[k].leftCols(columns) += blocks[k].col(columns) * added[k];
   }
-  last_ = {{p, p + n}, std::move(blocks)};
+  last_ = {{p, p + n}, std::move(blocks), std::move(added)};
   return &last_.blocks;
 }
 
@@ -284,26 +284,26 @@ std::vector<double> ModelResiduals::squares_of(std::vector<Eigen::MatrixXd> bloc
 
 std::vector<ModelResiduals::Normal> ModelResiduals::normal_equations(const double* p) const {
   const auto n = static_cast<Eigen::Index>(parameter_count());
-  std::vector<Block> blocks;
-  if (!compressed(p, true, blocks)) return {};
-  const auto added = corrections(blocks);
+  const std::vector<Block>* blocks = white_blocks(p);
+  if (blocks == nullptr) return {};
+  const std::vector<Eigen::RowVectorXd>& added = last_.added;
   // M'M J of a slip is (I - c P_g) of its white rows, and through the mean of all slips g' (white rows) summed over
   // them.
   std::vector<Normal> out;
   Eigen::VectorXd through_mean = Eigen::VectorXd::Zero(n);
   double weights = 0;
-  for (std::size_t k = 0; k < blocks.size(); ++k) {
-    const auto g = blocks[k].col(n + 1), r = blocks[k].col(n);
-    Eigen::MatrixXd white = blocks[k].leftCols(n);
+  for (std::size_t k = 0; k < blocks->size(); ++k) {
+    const auto white = (*blocks)[k].leftCols(n);
+    const auto r = (*blocks)[k].col(n), g = (*blocks)[k].col(n + 1);
     if (added.empty()) {
       out.push_back({white.transpose() * white, white.transpose() * r, Eigen::VectorXd::Zero(n)});
       continue;
     }
-    white += g * added[k].head(n);
-    const double norm = g.squaredNorm(), own = norm > 0 ? g.dot(r) / norm : 0;
+    const double norm = g.squaredNorm(), own = norm > 0 ? g.dot(r) / norm - added[k](n) : 0;  // of r as it was
     const Eigen::VectorXd projection = white.transpose() * g;
-    out.push_back({white.transpose() * white, white.transpose() * r - whitening_->part * own * projection,
-                   Eigen::VectorXd::Constant(n, whitening_->part * own * whitening_->weight[slips_[k]])});
+    const double weight = whitening_->part * own;
+    out.push_back({white.transpose() * white, white.transpose() * r - (added[k](n) + weight) * projection,
+                   Eigen::VectorXd::Constant(n, weight * whitening_->weight[slips_[k]])});
     through_mean += projection;
     weights += whitening_->weight[slips_[k]];
   }
@@ -348,6 +348,19 @@ std::vector<double> ModelResiduals::squares(const double* p) const {
 double ModelResiduals::white_squares(const double* p) const {
   Eigen::VectorXd rows(static_cast<Eigen::Index>(count()));
   return evaluate(p, rows.data(), nullptr) ? rows.squaredNorm() : std::numeric_limits<double>::quiet_NaN();
+}
+
+double ModelResiduals::squares_with_scatter(const double* p) const {
+  const auto n = static_cast<Eigen::Index>(parameter_count());
+  const std::vector<Block>* blocks = white_blocks(p);
+  if (blocks == nullptr) return std::numeric_limits<double>::quiet_NaN();
+  double sum = 0;
+  for (std::size_t k = 0; k < blocks->size(); ++k) {
+    const auto r = (*blocks)[k].col(n), g = (*blocks)[k].col(n + 1);
+    const double added = last_.added.empty() ? 0 : last_.added[k](n);
+    sum += (r - added * g).squaredNorm();
+  }
+  return sum;
 }
 
 std::vector<ModelResiduals::StickSquares> ModelResiduals::stick_squares(const double* p) const {

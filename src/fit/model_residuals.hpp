@@ -110,6 +110,10 @@ class ModelResiduals final : public Residuals {
   /// Sum of squares of all rows at p, whitened. NaN where the model is not finite.
   double white_squares(const double* p) const;
 
+  /// The same without what whitening does to the scatter of break-away, which would hide slips that all lie beside the
+  /// model.
+  double squares_with_scatter(const double* p) const;
+
   /// What the rows of stick are worth against a rigid stick.
   struct StickSquares {
     double rigid = 0;  ///< squares of those rows without any creep
@@ -200,6 +204,7 @@ class ModelResiduals final : public Residuals {
   struct Evaluated {
     std::vector<double> p;  ///< empty: none yet
     std::vector<Block> blocks;
+    std::vector<Eigen::RowVectorXd> added;  ///< see corrections(): what whitened them
   };
   mutable Evaluated last_;  ///< see white_blocks()
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "limits.hpp"
 #include "statistics/linear_algebra.hpp"
@@ -70,16 +69,6 @@ double take_gauss_newton_step(const Linearisation& here, const Bounds& bounds, d
 
 }  // namespace
 
-namespace {
-
-double plain_squares(const ModelResiduals& plain, const std::vector<double>& p) {
-  std::vector<double> left(plain.count());
-  if (!plain.evaluate(p.data(), left.data(), nullptr)) return std::numeric_limits<double>::infinity();
-  return std::inner_product(left.begin(), left.end(), left.begin(), 0.0);
-}
-
-}  // namespace
-
 bool refine(FitContext& context, const std::optional<ChangePoint>& change, Bounds& held, std::vector<double>& p) {
   const std::vector<std::size_t> all = all_slips(context.observations);
   const ModelResiduals plain(context.model, context.observations, all, context.evaluation);
@@ -103,15 +92,18 @@ bool refine(FitContext& context, const std::optional<ChangePoint>& change, Bound
   return false;
 }
 
-void refine_look(FitContext& context, const Bounds& held, std::vector<double>& p) {
+ModelResiduals refine_look(FitContext& context, const Bounds& held, std::vector<double>& p) {
   const std::vector<std::size_t> all = all_slips(context.observations);
-  const ModelResiduals plain(context.model, context.observations, all, context.evaluation);
-  context.whitening = plain.whitening_at(p.data());
-  const std::optional<Linearisation> here = linearise(context.residuals(all), p);
-  if (!here) return;
+  context.whitening = ModelResiduals(context.model, context.observations, all, context.evaluation).whitening_at(p.data());
+  ModelResiduals residuals = context.residuals(all);
+  const std::optional<Linearisation> here = linearise(residuals, p);
+  if (!here) return residuals;
+  const double before = residuals.squares_with_scatter(p.data());
   std::vector<double> next = p;
   const double length = take_gauss_newton_step(*here, held, static_cast<double>(context.observations.size()), next);
-  if (std::isfinite(length) && plain_squares(plain, next) <= kRiseOfLook * plain_squares(plain, p)) p = std::move(next);
+  if (!std::isfinite(length)) return residuals;
+  if (residuals.squares_with_scatter(next.data()) <= kRiseOfLook * before) p = std::move(next);
+  return residuals;
 }
 
 }  // namespace tribofit

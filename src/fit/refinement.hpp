@@ -17,7 +17,7 @@ namespace tribofit {
 bool refine(FitContext& context, const std::optional<ChangePoint>& change, Bounds& held, std::vector<double>& p);
 
 /// The same for a look: one such step, where it leads no further from the data. Sets the whitening of the context to
-/// that at the p given.
-void refine_look(FitContext& context, const Bounds& held, std::vector<double>& p);
+/// that at the p given. Returns the residuals of all slips with it.
+ModelResiduals refine_look(FitContext& context, const Bounds& held, std::vector<double>& p);
 
 }  // namespace tribofit

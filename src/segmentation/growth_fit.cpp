@@ -1,6 +1,7 @@
 #include "growth_fit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -26,32 +27,81 @@ Growth growth_in(const Window& window, const Growth& growth) {
 
 namespace {
 
-// The exponential runs by recurrence.
-template <bool with_shared>
-Sums sums_at(const Window& w, const Growth& common, double t0) {
-  const Growth growth = growth_in(w, common);
-  const double by_gain = w.excess / faster_in(w, common);
-  Sums s;
-  const auto first = static_cast<std::size_t>(std::max(0.0, std::ceil(t0)));
-  s.rss = w.squares[std::min(first, w.v.size())];
-  const double factor = std::exp(growth.lambda), a = growth.a;
-  double e = std::exp(growth.lambda * (static_cast<double>(first) - t0));
-  for (std::size_t i = first; i < w.v.size(); ++i, e *= factor) {
-    const double x = growth.lambda * (static_cast<double>(i) - t0);
-    const double shape = e - 1 - x;
-    const double r = w.v[i] - a * shape - growth.b * (e - 1);
-    const double slope = a * (e - 1) + growth.b * e;  // dv/dx
-    const double d = -growth.lambda * slope;          // dv/dt0
-    s.rss += r * r;
-    s.h += d * d;
-    s.g += d * r;
+/// Sums over samples, N side by side: the exponential runs by recurrence, and one by one each sample would wait for the
+/// one before. Derivatives of the model by log A, log lambda and B; that by the gain is made of the first two.
+template <int N, bool with_shared>
+struct RunningSums {
+  using Samples = Eigen::Array<double, N, 1>;
+  enum Term { kRss, kH, kG, kMixed, kGradient = kMixed + 3, kShared = kGradient + 3, kAll = kShared + 6 };
+  std::array<Samples, with_shared ? kAll : kMixed> terms;
+
+  RunningSums() { terms.fill(Samples::Zero()); }
+
+  /// x: lambda (t - t0) of the samples; e: its exponential; v: what was measured.
+  void add(const Growth& growth, const Samples& x, const Samples& e, const Samples& v) {
+    const Samples shape = e - 1 - x, rise = e - 1;
+    const Samples r = v - growth.a * shape - growth.b * rise;
+    const Samples slope = growth.a * rise + growth.b * e;  // dv/dx
+    const Samples d = -growth.lambda * slope;              // dv/dt0
+    terms[kRss] += r * r;
+    terms[kH] += d * d;
+    terms[kG] += d * r;
     if constexpr (with_shared) {
-      const Eigen::Vector4d j(a * shape, x * slope, e - 1, by_gain * (x * slope - 2 * a * shape));
-      s.mixed += d * j;
-      s.shared += j * j.transpose();
-      s.gradient += j * r;
+      const std::array<Samples, 3> j = {growth.a * shape, x * slope, rise};
+      std::size_t product = kShared;
+      for (std::size_t k = 0; k < j.size(); ++k) {
+        terms[kMixed + k] += d * j[k];
+        terms[kGradient + k] += j[k] * r;
+        for (std::size_t l = k; l < j.size(); ++l) terms[product++] += j[k] * j[l];
+      }
     }
   }
+
+  double sum(std::size_t term) const { return terms[term].sum(); }
+};
+
+/// Of both, by all four parameters. by_gain: d lambda / d gain over lambda.
+template <int N>
+void fill_shared(const RunningSums<N, true>& many, const RunningSums<1, true>& last, double by_gain, Sums& out) {
+  using Running = RunningSums<1, true>;
+  const auto sum = [&](std::size_t term) { return many.sum(term) + last.sum(term); };
+  const auto vector = [&](std::size_t first) { return Eigen::Vector3d(sum(first), sum(first + 1), sum(first + 2)); };
+  Eigen::Matrix3d products;
+  std::size_t term = Running::kShared;
+  for (Eigen::Index k = 0; k < 3; ++k)
+    for (Eigen::Index l = k; l < 3; ++l) products(k, l) = products(l, k) = sum(term++);
+  Eigen::Matrix<double, 4, 3> of_all = Eigen::Matrix<double, 4, 3>::Identity();
+  of_all.row(3) << -2 * by_gain, by_gain, 0;
+  out.mixed = of_all * vector(Running::kMixed);
+  out.gradient = of_all * vector(Running::kGradient);
+  out.shared = of_all * products * of_all.transpose();
+}
+
+template <bool with_shared>
+Sums sums_at(const Window& w, const Growth& common, double t0) {
+  constexpr int kSideBySide = 4;
+  using Samples = Eigen::Array<double, kSideBySide, 1>;
+  using One = Eigen::Array<double, 1, 1>;
+  const Growth growth = growth_in(w, common);
+  const double factor = std::exp(growth.lambda), of_four = std::pow(factor, kSideBySide);
+  std::size_t i = std::min(static_cast<std::size_t>(std::max(0.0, std::ceil(t0))), w.v.size());
+  Sums s;
+  s.rss = w.squares[i];
+  Samples x, e;
+  for (int k = 0; k < kSideBySide; ++k) {
+    x(k) = growth.lambda * (static_cast<double>(i) + k - t0);
+    e(k) = k == 0 ? std::exp(x(0)) : e(k - 1) * factor;
+  }
+  RunningSums<kSideBySide, with_shared> many;
+  for (; i + kSideBySide <= w.v.size(); i += kSideBySide, x += kSideBySide * growth.lambda, e *= of_four)
+    many.add(growth, x, e, Eigen::Map<const Samples>(w.v.data() + i));
+  RunningSums<1, with_shared> last;
+  for (int k = 0; i < w.v.size(); ++i, ++k) last.add(growth, One(x(k)), One(e(k)), One(w.v[i]));
+  using Running = RunningSums<1, with_shared>;
+  s.rss += many.sum(Running::kRss) + last.sum(Running::kRss);
+  s.h = many.sum(Running::kH) + last.sum(Running::kH);
+  s.g = many.sum(Running::kG) + last.sum(Running::kG);
+  if constexpr (with_shared) fill_shared(many, last, w.excess / faster_in(w, common), s);
   return s;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <set>
 
@@ -14,13 +15,15 @@ constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 /// Appends what is to be drawn of samples [begin, end).
 void draw_stretch(std::span<const double> values, std::size_t begin, std::size_t end, std::vector<std::size_t>& drawn) {
   std::size_t least = kNone, largest = kNone, gap = kNone;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
   for (std::size_t i = begin; i < end; ++i) {
-    if (!std::isfinite(values[i])) {
+    const double x = values[i];
+    if (!std::isfinite(x)) {
       if (gap == kNone) gap = i;
       continue;
     }
-    if (least == kNone || values[i] < values[least]) least = i;
-    if (largest == kNone || values[i] > values[largest]) largest = i;
+    if (x < low) low = x, least = i;
+    if (x > high) high = x, largest = i;
   }
   std::array<std::size_t, 5> kept = {begin, least, largest, gap, end - 1};
   std::sort(kept.begin(), kept.end());

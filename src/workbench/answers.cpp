@@ -118,51 +118,67 @@ std::string text_of_answer(const Json& json) {
 
 namespace {
 
-/// A section; its items, which are long, are written side by side.
-std::string section_text(const ReportSection& section) {
-  std::vector<std::string> items(section.items.size());
-  run_tasks(items.size(), 0, [&](std::size_t k) { items[k] = text_of_answer(item_json(section.items[k])); });
-  std::string out = text_of_answer(object("id", section.id, "title", section.title));
-  out.pop_back();  // the closing brace
-  out += ",\"items\":[";
-  for (const std::string& item : items) {
-    if (out.back() != '[') out += ',';
-    out += item;
+/// Sections as text; their items, which are long, are written side by side.
+std::vector<std::string> section_texts(const std::vector<const ReportSection*>& sections) {
+  std::vector<const ReportItem*> items;
+  for (const ReportSection* section : sections) {
+    for (const ReportItem& item : section->items) items.push_back(&item);
   }
-  return out + "]}";
+  std::vector<std::string> written(items.size());
+  run_tasks(items.size(), 0, [&](std::size_t k) { written[k] = text_of_answer(item_json(*items[k])); });
+  std::vector<std::string> out;
+  auto next = written.begin();
+  for (const ReportSection* section : sections) {
+    std::string text = text_of_answer(object("id", section->id, "title", section->title));
+    text.pop_back();  // the closing brace
+    text += ",\"items\":[";
+    for (const auto end = next + static_cast<std::ptrdiff_t>(section->items.size()); next != end; ++next) {
+      if (text.back() != '[') text += ',';
+      text += *next;
+    }
+    out.push_back(text + "]}");
+  }
+  return out;
 }
 
 }  // namespace
 
-std::string WrittenSections::text_of(const std::shared_ptr<const ReportSection>& section) {
-  constexpr std::size_t kMostKept = 4;
-  {
-    const std::lock_guard lock(mutex_);
-    for (const auto& [known, text] : kept_) {
-      if (known == section) return text;
-    }
+std::optional<std::string> WrittenSections::text_of(const std::shared_ptr<const ReportSection>& section) {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [known, text] : kept_) {
+    if (known == section) return text;
   }
-  std::string text = section_text(*section);
+  return std::nullopt;
+}
+
+void WrittenSections::keep(const std::shared_ptr<const ReportSection>& section, const std::string& text) {
+  constexpr std::size_t kMostKept = 4;
   const std::lock_guard lock(mutex_);
   if (kept_.size() >= kMostKept) kept_.erase(kept_.begin());
   kept_.emplace_back(section, text);
-  return text;
 }
 
 std::string picture_text(const WorkbenchPicture& picture, double turn, const WorkbenchSession& session,
                          WrittenSections& written) {
-  const std::vector<ReportSection>& sections = picture.report.sections;
-  std::string list;
-  const auto add = [&](const std::string& section) { list += (list.empty() ? "" : ",") + section; };
-  for (const ReportSection& section : sections) {
-    if (&section == &sections.back() && !picture.cycles->items.empty()) add(written.text_of(picture.cycles));
-    add(section_text(section));
+  const std::optional<std::string> known = written.text_of(picture.cycles);
+  std::vector<const ReportSection*> sections;
+  for (const ReportSection& section : picture.report.sections) sections.push_back(&section);
+  if (!known) sections.push_back(picture.cycles.get());
+  std::vector<std::string> texts = section_texts(sections);
+  if (known) texts.push_back(*known);
+  if (!known) written.keep(picture.cycles, texts.back());
+  if (picture.cycles->items.empty()) {
+    texts.pop_back();
+  } else if (texts.size() > 1) {  // the cycles stand before what was run, which ends the report
+    std::swap(texts.back(), texts[texts.size() - 2]);
   }
   const Json others = {
       {"rung", rung_json(picture.rung, session.motion(), true)}, {"rungs", rungs_json(session)}, {"turn", turn}};
   std::string out = text_of_answer(others), shown = text_of_answer(report_json_without_sections(picture.report));
   out.pop_back(), shown.pop_back();  // the closing braces
-  return out + ",\"report\":" + shown + ",\"sections\":[" + list + "]}}";
+  out += ",\"report\":" + shown + ",\"sections\":[";
+  for (std::size_t k = 0; k < texts.size(); ++k) out += (k > 0 ? "," : "") + texts[k];
+  return out + "]}}";
 }
 
 Json curve_json(const Curve& curve) {

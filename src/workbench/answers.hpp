@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,7 +30,8 @@ std::string text_of_answer(const Json& json);
 /// The text of sections that many answers share, each written once.
 class WrittenSections {
  public:
-  std::string text_of(const std::shared_ptr<const ReportSection>& section);
+  std::optional<std::string> text_of(const std::shared_ptr<const ReportSection>& section);
+  void keep(const std::shared_ptr<const ReportSection>& section, const std::string& text);
 
  private:
   std::mutex mutex_;

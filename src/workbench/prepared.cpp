@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "tribofit/statistics/parallel.hpp"
+
 namespace tribofit::workbench {
 
 bool same_part(const Selection& a, const Selection& b) {
@@ -22,9 +24,17 @@ TracePart Prepared::part(const Selection& selection, int threads) {
   const auto said = out.segmentation.notes.begin() + static_cast<std::ptrdiff_t>(whole_.segmentation.notes.size());
   out.notes.insert(out.notes.end(), said, out.segmentation.notes.end());
   const std::lock_guard lock(looking_);
-  std::optional<RecordNoise>& noise = seen(selection).noise;
-  if (!noise) noise = noise_of(drawn_.motion, out.segmentation, threads);
-  out.noise = noise;
+  Seen& known = seen(selection);
+  if (!known.noise) {
+    static_cast<TracePart&>(drawn_) = out;
+    RecordNoise noise;
+    run_tasks(2, threads, [&](std::size_t k) {
+      if (k == 0) noise = noise_of(drawn_.motion, drawn_.segmentation, threads);
+      if (k == 1) known.cycles = drawn_cycles();
+    });
+    known.noise = noise;
+  }
+  out.noise = known.noise;
   return out;
 }
 
@@ -33,10 +43,14 @@ Report Prepared::draw(TracePart part, const Selection& selection, ReportOptions 
   const std::lock_guard lock(looking_);
   static_cast<TracePart&>(drawn_) = std::move(part);
   std::shared_ptr<const ReportSection>& known = seen(selection).cycles;
-  if (!known) known = std::make_shared<const ReportSection>(cycles_section(drawn_));
+  if (!known) known = drawn_cycles();  // meanwhile other pages looked at so many parts that this one was not kept
   cycles = known;
   options.leave_out_cycles = true;
   return report_of(drawn_, options);
+}
+
+std::shared_ptr<const ReportSection> Prepared::drawn_cycles() const {
+  return std::make_shared<const ReportSection>(cycles_section(drawn_));
 }
 
 Prepared::Seen& Prepared::seen(const Selection& selection) {

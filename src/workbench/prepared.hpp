@@ -21,7 +21,7 @@ class Prepared {
 
   const Motion& motion() const { return drawn_.motion; }
 
-  /// The part that is selected, as before any fit, with its noise.
+  /// The part that is selected, as before any fit, with its noise; its cycles are drawn meanwhile.
   TracePart part(const Selection& selection, int threads);
 
   /// The report of a part, but for its section of the cycles, which stands beside it.
@@ -37,6 +37,8 @@ class Prepared {
   };
 
   Seen& seen(const Selection& selection);
+  /// The section of the cycles of the part in drawn_.
+  std::shared_ptr<const ReportSection> drawn_cycles() const;
 
   Identification drawn_;  ///< its part is the one that was drawn last
   const TracePart whole_;
