@@ -96,7 +96,7 @@ double FrictionDynamics::friction_at_rest() const {
   double level = law_at_rest(model_, law_);
   for_each_effect(model_, p_.data(), [&]<class E>(const E& effect, const double* q) {
     if constexpr (hooks::HasContactAge<E, double>) {
-      const double speed = effect.equivalent_speed(q, age_);
+      const double speed = detail::equivalent_speed(effect.renewal_distance(q), age_);
       level = steady_friction(model_, p_.data(), law_, SlidingState<double>{.velocity = 0}, &speed);
     }
   });
@@ -163,8 +163,9 @@ double FrictionDynamics::run(const SlidingState<double>& now, std::span<const do
   std::size_t k = 0;
   for_each_effect(model_, p_.data(), [&]<class E>(const E& effect, const double* q) {
     if constexpr (hooks::HasContactAge<E, double>) {
-      if (want_rates) rate[k] = 1 - effect.contact_renewal_rate(q, speed) * state[k];
-      speed = effect.equivalent_speed(q, state[k]);
+      const double distance = effect.renewal_distance(q);
+      if (want_rates) rate[k] = 1 - speed / distance * state[k];
+      speed = detail::equivalent_speed(distance, state[k]);
     }
     if constexpr (hooks::HasContactAge<E, double> || hooks::Remembers<E, double>) ++k;
   });

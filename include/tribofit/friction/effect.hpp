@@ -35,9 +35,9 @@ struct Motion;
 ///        reduced speed x = steepness v of the base law, where it has one
 ///   LocalSliding<T> average_over_contact(p, const SlidingState<T>&)
 ///        local speeds within the contact: f is taken at `speed`, and `share` of it acts along v_r
-///   T contact_renewal_rate(p, const V& v), T equivalent_speed(p, const T& theta)
-///        contacts with an age, d theta/dt = 1 - contact_renewal_rate theta: the base law is taken at equivalent_speed
-///        instead of v (see contact_age.hpp)
+///   T renewal_distance(p)
+///        contacts with an age, d theta/dt = 1 - v theta / renewal_distance: the base law is taken at renewal_distance /
+///        theta instead of v (see contact_age.hpp)
 ///   T steady(p, const SlidingState<T>&, const T& mu)
 ///        steady friction f(v) >= 0, before any memory
 ///   Relaxation<T> relaxation(p, const SlidingState<T>&, const T& steady)

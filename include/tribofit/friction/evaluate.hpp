@@ -222,7 +222,7 @@ void steady_friction(const FrictionModel& model, const T* p, const LawValues<T>&
   if (spreads) return;
   for (std::size_t i = 0; i < n; ++i) mu[i] = slip.speed(velocity[i]);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
-    if constexpr (hooks::HasContactAge<E, T>) detail::equivalent_speeds(effect, q, slip, velocity, mu);
+    if constexpr (hooks::HasContactAge<E, T>) detail::equivalent_speeds(effect.renewal_distance(q), slip, velocity, mu);
   });
   detail::reduce_speed(model, law, mu.first(n));
   bool bent = false;
@@ -251,7 +251,7 @@ T friction_at_rest(const FrictionModel& model, const T* p, const LawValues<T>& l
     if constexpr (hooks::HasContactAge<E, T>) {
       SlidingState<T> at;
       at.velocity = T(0.0 * p[0]);
-      const T speed = effect.equivalent_speed(q, age_at_break_away(effect, q, slip));
+      const T speed = speed_at_break_away(effect.renewal_distance(q), slip);
       level = steady_friction(model, p, law, at, &speed);
     }
   });

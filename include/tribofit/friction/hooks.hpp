@@ -28,8 +28,8 @@ concept Steadies = requires(const E e, const T* p, const SlidingState<T>& x, con
   e.steady(p, x, mu);
 };
 template <class E, class T>
-concept HasContactAge = requires(const E e, const T* p, const T& theta) {
-  e.equivalent_speed(p, theta);
+concept HasContactAge = requires(const E e, const T* p) {
+  e.renewal_distance(p);
 };
 template <class E, class T>
 concept Remembers = requires(const E e, const T* p, const SlidingState<T>& x, const T& mu) {

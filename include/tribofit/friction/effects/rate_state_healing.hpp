@@ -28,17 +28,10 @@ struct RateStateHealing {
     return info;
   }
 
-  /// Renewals of the contacts in unit time at the speed `v` [1/s].
-  template <class T, class V>
-  T contact_renewal_rate(const T* p, const V& v) const {
-    return v / p[0];
-  }
-
-  /// Speed of steady sliding that makes contacts of the age `theta` [m/s].
+  /// D_c [m].
   template <class T>
-  T equivalent_speed(const T* p, const T& theta) const {
-    constexpr double kYoungest = 1e-12;  // s
-    return scalar_part(theta) > kYoungest ? T(p[0] / theta) : T(p[0] / kYoungest);
+  T renewal_distance(const T* p) const {
+    return p[0];
   }
 
   template <class T>
