@@ -259,14 +259,15 @@ T friction_at_rest(const FrictionModel& model, const T* p, const LawValues<T>& l
 }
 
 /// Carries every memory through a slip, in place; whether friction is signed then, as that of one which acts in stick.
-template <class T>
-bool remember_all(const FrictionModel& model, const T* p, const LawValues<T>& law, const Slip& slip, const T& at_rest,
-                  std::span<const T> velocity, std::span<T> mu) {
+/// at_rest(): |mu| that a rigid stick before it reaches.
+template <class T, class AtRest>
+bool remember_all(const FrictionModel& model, const T* p, const LawValues<T>& law, const Slip& slip,
+                  const AtRest& at_rest, std::span<const T> velocity, std::span<T> mu) {
   bool is_signed = false;
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::Remembers<E, T>) {
       const auto steady_at = [&](const SlidingState<T>& at) { return steady_friction(model, p, law, at); };
-      remember(effect, q, slip, at_rest, steady_at, velocity, mu);
+      remember(effect, q, slip, at_rest(), steady_at, velocity, mu);
       is_signed = hooks::ActsInStick<E>;
     }
   });
@@ -295,8 +296,9 @@ T friction_after_creep(const FrictionModel& model, const T* p, const LawValues<T
   const T velocity = T(last.velocity[0] + 0.0 * p[0]);
   T mu;
   steady_friction(model, p, law, last, std::span<const T>(&velocity, 1), std::span<T>(&mu, 1));
+  const auto at_rest = [level = mu] { return level; };
   const bool is_signed =
-      remember_all(model, p, law, last, T(mu), std::span<const T>(&velocity, 1), std::span<T>(&mu, 1));
+      remember_all(model, p, law, last, at_rest, std::span<const T>(&velocity, 1), std::span<T>(&mu, 1));
   return is_signed ? mu : T(slip.direction * mu);
 }
 
@@ -356,9 +358,9 @@ void evaluate(const FrictionModel& model, const T* p, const Slip& slip, std::spa
   const LawValues<T> law = law_for(model, p, slip);
   const std::size_t n = slip.size();
   steady_friction(model, p, law, slip, velocity, mu);
+  const auto at_rest = [&] { return detail::friction_at_rest(model, p, law, slip); };
   const bool is_signed =
-      model.state_count() > 0 && n > 0 &&
-      detail::remember_all(model, p, law, slip, detail::friction_at_rest(model, p, law, slip), velocity, mu);
+      model.state_count() > 0 && n > 0 && detail::remember_all(model, p, law, slip, at_rest, velocity, mu);
   if (!is_signed && slip.direction < 0) {
     for (std::size_t i = 0; i < n; ++i) mu[i] = T(-mu[i]);
   }
