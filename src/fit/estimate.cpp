@@ -264,7 +264,7 @@ SolverOptions quick_search() {
 SolverOptions short_search() {
   SolverOptions look = quick_search();
   look.max_iterations = 12;
-  look.relative_cost = 1e-6;
+  look.relative_cost = 1e-4;  // a step over all values follows
   look.hold_at_bounds = true;
   return look;
 }
