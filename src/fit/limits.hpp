@@ -207,9 +207,10 @@ inline constexpr double kSlackOfStated = 0.1, kSlackOfSpeed = 1;
 /// Smaller: a later answer is taken for a softer machine; larger: what else friction does beside a step is taken for a
 /// later one.
 inline constexpr double kSlackOfDisplacement = 0.05, kChanceOfMovedStep = 1e-3;
-/// Chance that noise makes two states describe the steps so much better, below which they do, and error of b or D_c of
-/// either over its value above which nothing is known of it. The chance is small as noise that wanders is much like the
-/// answer of a second state; data/validation/velocity-steps.md has how often either was taken for the other.
+/// Chance that noise makes two states describe the steps so much better, below which they do, and error of a, and of b
+/// or D_c of either, over its value above which nothing is known of it. The chance is small as noise that wanders is
+/// much like the answer of a second state; data/validation/velocity-steps.md has how often either was taken for the
+/// other.
 inline constexpr double kChanceOfSecondState = 1e-8, kVagueOfState = 0.5;
 /// Bounds of a, b and k over the range of friction, and of D_c and k over what is slid in a sampling interval and in
 /// the longest step: nothing of the response is left to see beyond them.

@@ -87,7 +87,8 @@ class Analysis {
     }
     const std::vector<FitParameter>& found = two.best_law().fit.parameters;
     const auto is_vague = [](const FitParameter& p) { return !(p.std_error < kVagueOfState * std::abs(p.value)); };
-    if (std::any_of(found.begin() + 1, found.end() - 1, is_vague)) {
+    // a too: without it, a state that falls over less than a sample's sliding stands for the direct effect.
+    if (std::any_of(found.begin(), found.end() - 1, is_vague)) {
       out_.second_state = SecondState::not_determined;
       if (chosen_.fitted())
         out_.messages.emplace_back(
