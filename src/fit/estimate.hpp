@@ -11,9 +11,9 @@ namespace tribofit {
 /// The values that a protocol finds.
 struct Solution {
   SolverResult result;
-  std::vector<double> start;  ///< of the first search
-  CycleExtremes extremes;     ///< by per-cycle extremes only
-  bool has_levels = true;     ///< false: the extremes of too few cycles are known
+  std::vector<double> start;                ///< of the first search
+  CycleExtremes extremes;                   ///< by per-cycle extremes only
+  bool has_levels = true;                   ///< false: the extremes of too few cycles are known
   std::optional<ModelResiduals> residuals;  ///< of all slips with the whitening of the context, where they are known
   const std::vector<double>& values() const { return result.p; }
 };

@@ -94,7 +94,8 @@ bool refine(FitContext& context, const std::optional<ChangePoint>& change, Bound
 
 ModelResiduals refine_look(FitContext& context, const Bounds& held, std::vector<double>& p) {
   const std::vector<std::size_t> all = all_slips(context.observations);
-  context.whitening = ModelResiduals(context.model, context.observations, all, context.evaluation).whitening_at(p.data());
+  context.whitening =
+      ModelResiduals(context.model, context.observations, all, context.evaluation).whitening_at(p.data());
   ModelResiduals residuals = context.residuals(all);
   const std::optional<Linearisation> here = linearise(residuals, p);
   if (!here) return residuals;

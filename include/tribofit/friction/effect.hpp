@@ -36,8 +36,8 @@ struct Motion;
 ///   LocalSliding<T> average_over_contact(p, const SlidingState<T>&)
 ///        local speeds within the contact: f is taken at `speed`, and `share` of it acts along v_r
 ///   T renewal_distance(p)
-///        contacts with an age, d theta/dt = 1 - v theta / renewal_distance: the base law is taken at renewal_distance /
-///        theta instead of v (see contact_age.hpp)
+///        contacts with an age, d theta/dt = 1 - v theta / D with this distance D: the base law is taken at D / theta
+///        instead of v (see contact_age.hpp)
 ///   T steady(p, const SlidingState<T>&, const T& mu)
 ///        steady friction f(v) >= 0, before any memory
 ///   Relaxation<T> relaxation(p, const SlidingState<T>&, const T& steady)
