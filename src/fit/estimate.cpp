@@ -126,7 +126,7 @@ std::vector<double> best_of_starts(const FitContext& context, const std::vector<
   const std::vector<SolverResult> tries = searches_from(context, starts, part, search);
   std::size_t best = 0;
   for (std::size_t k = 1; k < tries.size(); ++k) {
-    if (tries[k].cost < tries[best].cost * (1 - 1e-6)) best = k;
+    if (tries[k].cost < tries[best].cost * (1 - std::max(1e-6, search.relative_cost))) best = k;
   }
   if (best != 0)
     fit.messages.push_back("the best fit was found from a random start, not from the one the data suggest");
@@ -210,7 +210,9 @@ Solution joint_estimate(FitContext& context, Fit& fit) {
     held = context.bounds;
   }
   settle(context, all, change, held, out.result.p);
-  out.result = context.solve(all, out.result.p, look ? search : careful_search(), held);
+  SolverOptions last = careful_search();
+  if (look) last = search, last.relative_cost = 1e-6;  // no other step follows
+  out.result = context.solve(all, out.result.p, last, held);
   return out;
 }
 

@@ -30,7 +30,7 @@ TracePart Prepared::part(const Selection& selection, int threads) {
     RecordNoise noise;
     run_tasks(2, threads, [&](std::size_t k) {
       if (k == 0) noise = noise_of(drawn_.motion, drawn_.segmentation, threads);
-      if (k == 1) known.cycles = drawn_cycles();
+      if (k == 1 && !known.cycles) known.cycles = drawn_cycles();
     });
     known.noise = noise;
   }
