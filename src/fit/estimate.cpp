@@ -195,11 +195,15 @@ Solution joint_estimate(FitContext& context, Fit& fit) {
   const Observations& few = means ? *means : context.observations;
   const std::vector<std::size_t> slips = means ? all : some_slips(few, look ? kWholeSlipsOfLook : kWholeSlips);
   Bounds held = context.bounds;
-  if (!means && slips.size() == all.size()) {
+  const bool is_short = !means && slips.size() == all.size();
+  if (is_short) {
     constexpr std::size_t kValuesToCompare = 4000;
     out.result.p = context.solve(all, best_of_starts(context, starts, kValuesToCompare, search, fit), search).p;
+    if (change && look) settle(context, all, change, held, out.result.p);
   } else {
     out.result.p = search_on(few, slips, context, starts, change, fit);
+  }
+  if (look || !is_short) {
     out.result.converged = true;
     if (change && look) held.lower[change->time] = held.upper[change->time] = out.result.p[change->time];
     if (look) {
@@ -210,9 +214,7 @@ Solution joint_estimate(FitContext& context, Fit& fit) {
     held = context.bounds;
   }
   settle(context, all, change, held, out.result.p);
-  SolverOptions last = careful_search();
-  if (look) last = search, last.relative_cost = 1e-6;  // no other step follows
-  out.result = context.solve(all, out.result.p, last, held);
+  out.result = context.solve(all, out.result.p, careful_search(), held);
   return out;
 }
 

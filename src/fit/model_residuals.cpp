@@ -231,8 +231,7 @@ std::vector<Eigen::RowVectorXd> ModelResiduals::corrections(const std::vector<Bl
 const std::vector<ModelResiduals::Block>* ModelResiduals::white_blocks(const double* p) const {
   const std::size_t n = parameter_count();
   if (last_.p.size() == n && std::equal(last_.p.begin(), last_.p.end(), p)) return &last_.blocks;
-  last_.p.clear();  // and copies of this for other threads stay small
-  std::vector<Block> blocks = std::exchange(last_.blocks, {});
+  std::vector<Block> blocks = std::exchange(last_, {}).blocks;  // copies of this for other threads stay small
   if (!compressed(p, true, blocks)) return nullptr;
   std::vector<Eigen::RowVectorXd> added = corrections(blocks);
   for (std::size_t k = 0; k < added.size(); ++k) {

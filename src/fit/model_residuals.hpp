@@ -84,7 +84,8 @@ class ModelResiduals final : public Residuals {
     Eigen::MatrixXd curvature;
     Eigen::VectorXd gradient, level_gradient;
   };
-  /// One for each slip given. Empty where the model is not finite.
+  /// One for each slip given. Empty where the model is not finite. Costs little where evaluate() was last asked for the
+  /// Jacobian at p.
   std::vector<Normal> normal_equations(const double* p) const;
 
   /// Further columns of the rows of slip k (index in observations.slips): d residual/d coefficient for every value and,
@@ -110,8 +111,8 @@ class ModelResiduals final : public Residuals {
   /// Sum of squares of all rows at p, whitened. NaN where the model is not finite.
   double white_squares(const double* p) const;
 
-  /// The same without what whitening does to the scatter of break-away, which would hide slips that all lie beside the
-  /// model.
+  /// The same with the scatter of break-away in it, which whitening takes out. Noise that raises whole slips stays
+  /// whitened where there is any.
   double squares_with_scatter(const double* p) const;
 
   /// What the rows of stick are worth against a rigid stick.

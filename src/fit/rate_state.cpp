@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "limits.hpp"
@@ -63,7 +64,8 @@ class Analysis {
   }
 
  private:
-  /// One state, unless a second describes the steps better beyond chance and what it adds is known from them.
+  /// One state, unless a second describes the steps better beyond chance and what it adds, and a, are known from
+  /// them.
   void choose_states(const RateStateData& data) {
     const auto with = [&](std::size_t states) {
       return fit_together(data, motion_.load_point_source, options_, states);
@@ -91,9 +93,11 @@ class Analysis {
     if (std::any_of(found.begin(), found.end() - 1, is_vague)) {
       out_.second_state = SecondState::not_determined;
       if (chosen_.fitted())
-        out_.messages.emplace_back(
-            "one state variable leaves more than noise, and these steps do not determine two: longer sliding behind "
-            "each step would");
+        out_.messages.push_back(
+            std::string("one state variable leaves more than noise, and these steps do not determine two: ") +
+            (is_vague(found.front())
+                 ? "a drive that turns faster, or more samples a second, would show the direct effect"
+                 : "longer sliding behind each step would"));
       return;
     }
     out_.second_state = SecondState::found;

@@ -70,11 +70,11 @@ void fill_shared(const RunningSums<N, true>& many, const RunningSums<1, true>& l
   std::size_t term = Running::kShared;
   for (Eigen::Index k = 0; k < 3; ++k)
     for (Eigen::Index l = k; l < 3; ++l) products(k, l) = products(l, k) = sum(term++);
-  Eigen::Matrix<double, 4, 3> of_all = Eigen::Matrix<double, 4, 3>::Identity();
-  of_all.row(3) << -2 * by_gain, by_gain, 0;
-  out.mixed = of_all * vector(Running::kMixed);
-  out.gradient = of_all * vector(Running::kGradient);
-  out.shared = of_all * products * of_all.transpose();
+  Eigen::Matrix<double, 4, 3> with_gain = Eigen::Matrix<double, 4, 3>::Identity();
+  with_gain.row(3) << -2 * by_gain, by_gain, 0;
+  out.mixed = with_gain * vector(Running::kMixed);
+  out.gradient = with_gain * vector(Running::kGradient);
+  out.shared = with_gain * products * with_gain.transpose();
 }
 
 template <bool with_shared>
@@ -83,7 +83,7 @@ Sums sums_at(const Window& w, const Growth& common, double t0) {
   using Samples = Eigen::Array<double, kSideBySide, 1>;
   using One = Eigen::Array<double, 1, 1>;
   const Growth growth = growth_in(w, common);
-  const double factor = std::exp(growth.lambda), of_four = std::pow(factor, kSideBySide);
+  const double factor = std::exp(growth.lambda), factor_of_all = std::pow(factor, kSideBySide);
   std::size_t i = std::min(static_cast<std::size_t>(std::max(0.0, std::ceil(t0))), w.v.size());
   Sums s;
   s.rss = w.squares[i];
@@ -93,7 +93,7 @@ Sums sums_at(const Window& w, const Growth& common, double t0) {
     e(k) = k == 0 ? std::exp(x(0)) : e(k - 1) * factor;
   }
   RunningSums<kSideBySide, with_shared> many;
-  for (; i + kSideBySide <= w.v.size(); i += kSideBySide, x += kSideBySide * growth.lambda, e *= of_four)
+  for (; i + kSideBySide <= w.v.size(); i += kSideBySide, x += kSideBySide * growth.lambda, e *= factor_of_all)
     many.add(growth, x, e, Eigen::Map<const Samples>(w.v.data() + i));
   RunningSums<1, with_shared> last;
   for (int k = 0; i < w.v.size(); ++i, ++k) last.add(growth, One(x(k)), One(e(k)), One(w.v[i]));

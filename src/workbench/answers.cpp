@@ -154,6 +154,7 @@ std::optional<std::string> WrittenSections::text_of(const std::shared_ptr<const 
 void WrittenSections::keep(const std::shared_ptr<const ReportSection>& section, const std::string& text) {
   constexpr std::size_t kMostKept = 4;
   const std::lock_guard lock(mutex_);
+  std::erase_if(kept_, [&](const auto& one) { return one.first == section; });  // of another page that asked with this
   if (kept_.size() >= kMostKept) kept_.erase(kept_.begin());
   kept_.emplace_back(section, text);
 }
@@ -165,8 +166,11 @@ std::string picture_text(const WorkbenchPicture& picture, double turn, const Wor
   for (const ReportSection& section : picture.report.sections) sections.push_back(&section);
   if (!known) sections.push_back(picture.cycles.get());
   std::vector<std::string> texts = section_texts(sections);
-  if (known) texts.push_back(*known);
-  if (!known) written.keep(picture.cycles, texts.back());
+  if (known) {
+    texts.push_back(*known);
+  } else {
+    written.keep(picture.cycles, texts.back());
+  }
   if (picture.cycles->items.empty()) {
     texts.pop_back();
   } else if (texts.size() > 1) {  // the cycles stand before what was run, which ends the report

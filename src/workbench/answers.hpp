@@ -27,7 +27,7 @@ Json rungs_json(const WorkbenchSession& session);
 
 std::string text_of_answer(const Json& json);
 
-/// The text of sections that many answers share, each written once.
+/// The text of sections that many answers share, so that few of them are written again.
 class WrittenSections {
  public:
   std::optional<std::string> text_of(const std::shared_ptr<const ReportSection>& section);

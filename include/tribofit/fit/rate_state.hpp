@@ -117,7 +117,7 @@ enum class SecondState {
   not_compared,   ///< the number was stated, or one leaves white noise alone
   not_needed,     ///< it describes them no better than chance would
   found,          ///< it does, and was taken
-  not_determined  ///< it does, and they do not determine what it adds
+  not_determined  ///< it does, and they do not determine what it adds, or a beside it
 };
 
 /// Chance that what answers the steps is noise, above which nothing is said of the law. It is nominal: D_c and k are

@@ -347,7 +347,8 @@ T break_away_level(const FrictionModel& model, const T* p, const Slip& slip) {
 /// Friction of the model at every sample of a slip, signed as v_r is.
 ///
 /// p: parameters in SI, model.parameters().size() of them, of which those of slip.record are taken; velocity: v_r
-/// [m/s]; mu: one value a sample, written. Cost: linear in samples; one pass per memory.
+/// [m/s], a constant: contacts with an age take no derivatives of it; mu: one value a sample, written. Cost: linear in
+/// samples; one pass per memory.
 template <class T>
 void evaluate(const FrictionModel& model, const T* p, const Slip& slip, std::span<const T> velocity, std::span<T> mu) {
   std::vector<T> own;

@@ -1,0 +1,89 @@
+/// A look (FitOptions::starts == 0) against the fit that it stands for.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "fit/model_residuals.hpp"
+#include "synthetic.hpp"
+#include "tribofit/fit/fit.hpp"
+
+namespace {
+
+using namespace tribofit;
+
+/// Parameters of the law, and `extra` of the effect, without scatter of break-away or with.
+synthetic::Record record_of(const FrictionModel& model, const std::vector<double>& extra, std::size_t cycles) {
+  std::vector<double> truth = synthetic::table4_15mm(model.law());
+  truth.insert(truth.end(), extra.begin(), extra.end());
+  synthetic::Options options;
+  options.noise = 0.003;
+  options.scatter = 0.004;
+  options.cycles = cycles;
+  options.seed = 5;
+  return synthetic::make(model, truth, options);
+}
+
+/// Short records are searched as a whole, long ones on some of their slips or on means.
+TEST(Look, IsNearTheFitOnShortAndLongRecords) {
+  struct Added {
+    const char* effect;
+    std::vector<double> extra;
+  };
+  for (const Added& c : {Added{"frictional-lag", {2e-3}}, Added{"force-bandwidth:first-order", {150}}}) {
+    const FrictionModel model(make_law("exponential"), {make_effect(c.effect)});
+    for (const std::size_t cycles : {8U, 60U}) {
+      const synthetic::Record record = record_of(model, c.extra, cycles);
+      const Observations observations = observe(record.motion, record.segmentation, model.needs());
+      FitOptions quick;
+      quick.starts = 0;
+      const Fit full = fit_model(model, record.motion, record.segmentation, observations);
+      const Fit look = fit_model(model, record.motion, record.segmentation, observations, {}, quick);
+      ASSERT_TRUE(full.converged && look.converged) << c.effect << ' ' << cycles;
+      EXPECT_LT(look.error.rmse, 1.01 * full.error.rmse) << c.effect << ' ' << cycles;
+      for (std::size_t k = 0; k < full.parameters.size(); ++k) {
+        EXPECT_NEAR(look.parameters[k].value, full.parameters[k].value, 0.2 * full.parameters[k].std_error)
+            << c.effect << ' ' << cycles << ' ' << full.parameters[k].parameter.name;
+      }
+    }
+  }
+}
+
+TEST(NormalEquations, AreTheSameBehindAnEvaluationAndWithoutOne) {
+  const FrictionModel model(make_law("exponential"), {make_effect("frictional-lag")});
+  const synthetic::Record record = record_of(model, {2e-3}, 20);
+  const Observations observations = observe(record.motion, record.segmentation, model.needs());
+  std::vector<double> p = synthetic::table4_15mm(make_law("exponential"));
+  p.push_back(2.2e-3);
+  const std::vector<std::size_t> all = all_slips(observations);
+  const ModelResiduals::Whitening whitening = ModelResiduals(model, observations, all).whitening_at(p.data());
+  ASSERT_GT(whitening.part, 0);
+  ModelResiduals fresh(model, observations, all), evaluated(model, observations, all);
+  fresh.whiten(whitening, true), evaluated.whiten(whitening, true);
+  std::vector<double> elsewhere = p, residual(evaluated.count()), jacobian(evaluated.count() * p.size());
+  elsewhere[1] *= 1.1;
+  ASSERT_TRUE(evaluated.evaluate(elsewhere.data(), residual.data(), jacobian.data()));
+  const auto truth = fresh.normal_equations(p.data());
+  ASSERT_EQ(truth.size(), all.size());
+  for (const bool again : {false, true}) {  // from elsewhere, then from the same place
+    const auto found = evaluated.normal_equations(p.data());
+    ASSERT_EQ(found.size(), truth.size());
+    for (std::size_t k = 0; k < truth.size(); ++k) {
+      EXPECT_EQ(found[k].curvature, truth[k].curvature) << again;
+      EXPECT_EQ(found[k].gradient, truth[k].gradient) << again;
+    }
+  }
+  // The curvature is that of the rows the solver sees.
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  ASSERT_TRUE(evaluated.evaluate(p.data(), residual.data(), jacobian.data()));
+  const Eigen::Map<const RowMajor> j(jacobian.data(), Eigen::Index(evaluated.count()), Eigen::Index(p.size()));
+  const Eigen::Map<const Eigen::VectorXd> r(residual.data(), Eigen::Index(residual.size()));
+  Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(j.cols(), j.cols());
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(j.cols());
+  for (const auto& slip : truth) curvature += slip.curvature, gradient += slip.gradient + slip.level_gradient;
+  EXPECT_LT((curvature - j.transpose() * j).norm(), 1e-9 * curvature.norm());
+  // Sums of M'M r in parts by slip and through the mean level are the whole gradient.
+  EXPECT_LT((gradient - j.transpose() * r).norm(), 1e-6 * (j.transpose().cwiseAbs() * r.cwiseAbs()).norm());
+}
+
+}  // namespace
