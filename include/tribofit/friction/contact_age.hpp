@@ -3,56 +3,11 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
-#include <type_traits>
 
+#include "tribofit/friction/one_derivative.hpp"
 #include "tribofit/friction/slip.hpp"
 
 namespace tribofit::detail {
-
-/// A number with its derivative by the distance over which contacts are renewed: their age depends on no other
-/// parameter, and to carry them all through each sample would cost several times as much.
-struct OfDistance {
-  double a = 0, v = 0;
-
-  OfDistance() = default;
-  explicit OfDistance(double value, double slope = 0) : a(value), v(slope) {}
-
-  friend OfDistance operator+(OfDistance x, OfDistance y) { return OfDistance(x.a + y.a, x.v + y.v); }
-  friend OfDistance operator-(OfDistance x, OfDistance y) { return OfDistance(x.a - y.a, x.v - y.v); }
-  friend OfDistance operator*(OfDistance x, OfDistance y) { return OfDistance(x.a * y.a, x.a * y.v + x.v * y.a); }
-  friend OfDistance operator/(OfDistance x, OfDistance y) {
-    const double inverse = 1 / y.a, ratio = x.a * inverse;
-    return OfDistance(ratio, (x.v - ratio * y.v) * inverse);
-  }
-  friend OfDistance operator+(double s, OfDistance x) { return OfDistance(s + x.a, x.v); }
-  friend OfDistance operator-(double s, OfDistance x) { return OfDistance(s - x.a, -x.v); }
-  friend OfDistance operator-(OfDistance x, double s) { return OfDistance(x.a - s, x.v); }
-  friend OfDistance operator*(double s, OfDistance x) { return OfDistance(s * x.a, s * x.v); }
-  friend OfDistance operator/(double s, OfDistance x) { return OfDistance(s) / x; }
-};
-
-/// What an age is computed in where parameters are of the type T.
-template <class T>
-using AgeNumber = std::conditional_t<std::is_same_v<T, double>, double, OfDistance>;
-
-template <class T>
-AgeNumber<T> as_variable(const T& distance) {
-  if constexpr (std::is_same_v<T, double>) {
-    return distance;
-  } else {
-    return OfDistance(distance.a, 1);
-  }
-}
-
-/// The same with its derivatives by all that `distance` depends on.
-template <class T>
-T by_parameters(const AgeNumber<T>& x, const T& distance) {
-  if constexpr (std::is_same_v<T, double>) {
-    return x;
-  } else {
-    return x.a + x.v * (distance - distance.a);
-  }
-}
 
 /// Age theta [s] of contacts that are renewed at the rate r [1/s], d theta/dt = 1 - r theta, after an interval over
 /// which r goes evenly from `before` to `now`.
@@ -129,7 +84,7 @@ N equivalent_speed(const N& distance, const N& theta) {
 /// Speed at which the law is taken at the break-away that begins `slip` [m/s].
 template <class T>
 T speed_at_break_away(const T& distance, const Slip& slip) {
-  const AgeNumber<T> d = as_variable(distance);
+  const WithOneDerivative<T> d = as_variable(distance);
   return by_parameters(equivalent_speed(d, age_at_break_away(d, slip)), distance);
 }
 
@@ -137,7 +92,7 @@ T speed_at_break_away(const T& distance, const Slip& slip) {
 /// steady sliding. velocity: v_r, of which no derivatives are taken.
 template <class T>
 void equivalent_speeds(const T& distance, const Slip& slip, std::span<const T> velocity, std::span<T> speed) {
-  using N = AgeNumber<T>;
+  using N = WithOneDerivative<T>;
   if (slip.size() == 0) return;
   constexpr double kSlowest = 1e-3;  // 1/s, for a slip that begins at v_r = 0 without a stick
   const N d = as_variable(distance), per_metre = 1.0 / d;

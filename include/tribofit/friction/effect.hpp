@@ -33,8 +33,10 @@ struct Motion;
 ///        parameters of the base law for a whole slip
 ///   T transform_speed(p, const T& x)
 ///        reduced speed x = steepness v of the base law, where it has one
-///   LocalSliding<T> average_over_contact(p, const SlidingState<T>&)
-///        local speeds within the contact: f is taken at `speed`, and `share` of it acts along v_r
+///   T rim_speed(p, double disc_speed), LocalSliding<T> average_over_contact(const T& rim, const T& speed)
+///        local speeds within a contact whose rim turns at that speed: f is taken at `speed`, and `share` of it acts
+///        along v_r; with them T slowest_reading(const T& rim), below which a reading of v_r is noise about rest. All
+///        but rim_speed see no parameters, and are static
 ///   T renewal_distance(p)
 ///        contacts with an age, d theta/dt = 1 - v theta / D with this distance D: the base law is taken at D / theta
 ///        instead of v (see contact_age.hpp)

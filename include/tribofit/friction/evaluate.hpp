@@ -11,6 +11,7 @@
 
 #include "tribofit/friction/contact_age.hpp"
 #include "tribofit/friction/hooks.hpp"
+#include "tribofit/friction/memory.hpp"
 #include "tribofit/friction/model.hpp"
 #include "tribofit/friction/read_through_low_pass.hpp"
 
@@ -100,7 +101,7 @@ T steady_friction(const FrictionModel& model, const T* p, const LawValues<T>& la
   T share = T(1.0);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::AveragesOverContact<E, T>) {
-      const LocalSliding<T> local = effect.average_over_contact(q, at);
+      const LocalSliding<T> local = E::average_over_contact(effect.rim_speed(q, at.disc_speed), T(abs(at.velocity)));
       share = local.share;
       at.velocity = at.direction * local.speed;
     }
@@ -119,91 +120,58 @@ T steady_friction(const FrictionModel& model, const T* p, const LawValues<T>& la
 
 namespace detail {
 
-/// A reading of a slip as a contact that slides at several speeds takes it; `spreads`: whether the model has one.
+/// A slip as a contact sees it that slides at several speeds.
 template <class T>
-SlidingState<T> as_read(const FrictionModel& model, const T* p, SlidingState<T> at, bool& spreads) {
+struct LocalSlip {
+  std::vector<T> velocity, share;  ///< of every sample, as in LocalSliding; empty: all of the contact slides at v_r
+};
+
+/// velocity: v_r, of which no derivatives are taken.
+template <class T>
+LocalSlip<T> local_slip(const FrictionModel& model, const T* p, const Slip& slip, std::span<const T> velocity) {
+  LocalSlip<T> out;
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::AveragesOverContact<E, T>) {
-      spreads = true;
-      const T slowest = effect.slowest_reading(q, at);
-      if (std::abs(scalar_part(at.velocity)) < scalar_part(slowest)) at.velocity = at.direction * slowest;
-    }
-  });
-  return at;
-}
-
-/// The highest steady friction from rest on [1]: `at_rest`, or less where a contact never sticks as a whole.
-template <class T>
-T peak_friction(const FrictionModel& model, const T* p, const LawValues<T>& law, const T& at_rest, SlidingState<T> at) {
-  T scale = T(0.0);
-  for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
-    if constexpr (hooks::AveragesOverContact<E, T>) scale = effect.average_over_contact(q, at).speed;
-  });
-  if (!(scalar_part(scale) > 0)) return at_rest;
-  T peak = T(0.0);
-  for (double v = 0.8; v < 40; v *= 1.15) {
-    at.velocity = at.direction * v * scale;
-    const T mu = steady_friction(model, p, law, at);
-    if (scalar_part(mu) > scalar_part(peak)) peak = mu;
-  }
-  return peak;
-}
-
-/// Carries one memory through a slip, in place: steady[i] becomes the friction after the memory.
-///
-/// Over each interval the exponent A (the mean rate times the interval) and a target linear in A give the exact
-/// solution phi+ = e phi + (1-e) g0 + (1 - (1-e)/A) (g1 - g0), e = exp(-A). steady_at(instant): friction before any
-/// memory, for samples of the lead.
-template <class E, class T, class Steady>
-void remember(const E& effect, const T* q, const Slip& slip, const T& at_rest, const Steady& steady_at,
-              std::span<const T> velocity, std::span<T> steady) {
-  using std::exp;
-  if (slip.size() == 0) return;
-  constexpr bool in_stick = hooks::ActsInStick<E>;
-  const bool begins_at_rest = slip.from_stick && !in_stick;
-  Relaxation<T> before = effect.relaxation(q, slip.at(0, velocity[0]), steady[0]);
-  T phi = before.target;
-  double previous = slip.time[0];
-  if (begins_at_rest) {
-    phi = at_rest;
-    previous = slip.break_away_time;
-    before = effect.relaxation(q, slip.at(0, T(0.0 * velocity[0])), at_rest);
-  }
-  const auto advance = [&](double time, const Relaxation<T>& now) {
-    const double interval = time - previous;
-    if (interval > 0) {
-      const T a = 0.5 * interval * (before.rate + now.rate);
-      const T e = exp(-a);
-      // (1-e)/A loses its digits for small A, where it is 1 - A/2.
-      const T mean = scalar_part(a) > 1e-5 ? T((1.0 - e) / a) : T(1.0 - 0.5 * a);
-      phi = e * phi + (1.0 - e) * before.target + (1.0 - mean) * (now.target - before.target);
-    }
-    previous = time;
-    before = now;
-  };
-  if (in_stick && !slip.lead_time.empty()) {
-    SlidingState<T> at = slip.at(0, T(0.0 * velocity[0]));
-    for (std::size_t i = 0; i < slip.lead_time.size(); ++i) {
-      at.velocity = T(slip.lead_velocity[i] + 0.0 * velocity[0]);
-      at.direction = slip.lead_velocity[i] < 0 ? -1 : 1;
-      const Relaxation<T> now = effect.relaxation(q, at, steady_at(at));
-      if (i == 0) {
-        phi = std::isfinite(slip.lead_friction) ? T(slip.lead_friction + 0.0 * velocity[0]) : now.target;
-        previous = slip.lead_time[0];
-        before = now;
+      using N = WithOneDerivative<T>;
+      const T rim = effect.rim_speed(q, slip.disc_speed);
+      const N variable = as_variable(rim), slowest = E::slowest_reading(variable);
+      for (const T& v : velocity) {
+        const double speed = slip.speed(scalar_part(v));
+        const LocalSliding<N> local =
+            E::average_over_contact(variable, speed < scalar_part(slowest) ? slowest : N(speed));
+        out.velocity.push_back(slip.direction * by_parameters(local.speed, rim));
+        out.share.push_back(by_parameters(local.share, rim));
       }
-      advance(slip.lead_time[i], now);
     }
+  });
+  return out;
+}
+
+/// The highest steady friction from rest on [1]: `at_rest`, or less where a contact never sticks as a whole. first: the
+/// first value of a slip.
+template <class T>
+T peak_friction(const FrictionModel& model, const T* p, const LawValues<T>& law, const T& at_rest, const Slip& first) {
+  T rim = T(0.0);
+  for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
+    if constexpr (hooks::AveragesOverContact<E, T>) rim = effect.rim_speed(q, first.disc_speed);
+  });
+  if (!(scalar_part(rim) > 0)) return at_rest;
+  const auto friction_at = [&first, &model]<class N>(const N* own, const LawValues<N>& own_law, const N& speed) {
+    SlidingState<N> at = first.at(0, N(first.direction * speed));
+    at.acceleration = 0;
+    return steady_friction(model, own, own_law, at);
+  };
+  // Looked for with the values alone; friction there carries their derivatives.
+  std::vector<double> values(model.parameters().size());
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = scalar_part(p[k]);
+  LawValues<double> law_values;
+  for (std::size_t k = 0; k < law.q.size(); ++k) law_values.q[k] = scalar_part(law.q[k]);
+  double peak = 0, rims = 0;
+  for (double v = 0.8; v < 40; v *= 1.15) {
+    const double mu = friction_at(values.data(), law_values, v * scalar_part(rim));
+    if (mu > peak) peak = mu, rims = v;
   }
-  for (std::size_t i = 0; i < slip.size(); ++i) {
-    const SlidingState<T> at = slip.at(i, velocity[i]);
-    advance(slip.time[i], effect.relaxation(q, at, steady[i]));
-    if constexpr (hooks::Outputs<E, T>) {
-      steady[i] = effect.output(q, at, steady[i], phi);
-    } else {
-      steady[i] = phi;
-    }
-  }
+  return peak > 0 ? friction_at(p, law, T(rims * rim)) : T(0.0);
 }
 
 }  // namespace detail
@@ -214,18 +182,17 @@ template <class T>
 void steady_friction(const FrictionModel& model, const T* p, const LawValues<T>& law, const Slip& slip,
                      std::span<const T> velocity, std::span<T> mu) {
   const std::size_t n = slip.size();
-  bool spreads = false;
-  for (std::size_t i = 0; i < n && (i == 0 || spreads); ++i) {
-    const SlidingState<T> at = detail::as_read(model, p, slip.at(i, velocity[i]), spreads);
-    if (spreads) mu[i] = steady_friction(model, p, law, at);
-  }
-  if (spreads) return;
+  const detail::LocalSlip<T> local = detail::local_slip(model, p, slip, velocity.first(n));
+  const bool is_local = !local.share.empty();
+  if (is_local) velocity = local.velocity;
   for (std::size_t i = 0; i < n; ++i) mu[i] = slip.speed(velocity[i]);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
-    if constexpr (hooks::HasContactAge<E, T>) detail::equivalent_speeds(effect.renewal_distance(q), slip, velocity, mu);
+    if constexpr (hooks::HasContactAge<E, T>) {
+      if (!is_local) detail::equivalent_speeds(effect.renewal_distance(q), slip, velocity, mu);
+    }
   });
   detail::reduce_speed(model, law, mu.first(n));
-  bool bent = false;
+  bool bent = is_local;  // the law is taken elsewhere than where readings spread about v_r
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::TransformsSpeed<E, T>) {
       for (std::size_t i = 0; i < n; ++i) mu[i] = effect.transform_speed(q, mu[i]);
@@ -238,6 +205,7 @@ void steady_friction(const FrictionModel& model, const T* p, const LawValues<T>&
       for (std::size_t i = 0; i < n; ++i) mu[i] = effect.steady(q, slip.at(i, velocity[i]), mu[i]);
     }
   });
+  for (std::size_t i = 0; i < n && is_local; ++i) mu[i] = local.share[i] * mu[i];
 }
 
 namespace detail {
@@ -312,7 +280,7 @@ T break_away(const FrictionModel& model, const T* p, const Slip& slip, bool sens
   const LawValues<T> law = law_for(model, p, slip);
   T mu = model.acts_in_stick() && !slip.lead_time.empty()
              ? friction_after_creep(model, p, law, slip)
-             : T(slip.direction * peak_friction(model, p, law, friction_at_rest(model, p, law, slip), at));
+             : T(slip.direction * peak_friction(model, p, law, friction_at_rest(model, p, law, slip), first));
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::Modulates<E, T>) {
       mu = effect.modulate(q, at, mu);

@@ -20,8 +20,8 @@ concept TransformsSpeed = requires(const E e, const T* p, const T& x) {
   e.transform_speed(p, x);
 };
 template <class E, class T>
-concept AveragesOverContact = requires(const E e, const T* p, const SlidingState<T>& x) {
-  e.average_over_contact(p, x);
+concept AveragesOverContact = requires(const E e, const T* p, const T& x) {
+  e.average_over_contact(e.rim_speed(p, 0.0), x);
 };
 template <class E, class T>
 concept Steadies = requires(const E e, const T* p, const SlidingState<T>& x, const T& mu) {

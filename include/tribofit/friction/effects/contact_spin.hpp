@@ -57,8 +57,7 @@ struct ContactSpin {
   /// would lose all its friction in them. Five least rim speeds where nothing spins, which leaves 99.5 % of friction,
   /// and soon nothing where the spin itself can be read.
   template <class T>
-  T slowest_reading(const T* p, const SlidingState<T>& x) const {
-    const T rim = rim_speed(p, x.disc_speed);
+  static T slowest_reading(const T& rim) {
     return 5 * least_rim_speed * least_rim_speed * least_rim_speed / (rim * rim);
   }
 
@@ -68,19 +67,17 @@ struct ContactSpin {
   template <class T>
   static T spin_factor(const T& x) {
     const T x2 = x * x, x4 = x2 * x2;
-    return 1.0 - x / 8.0 - x2 / 64.0 - 5.0 / 1024.0 * x * x2 - 0.0019368 * x4 - 0.0037290 * x * x4 * x4;
+    return 1.0 - 1.0 / 8.0 * x - 1.0 / 64.0 * x2 - 5.0 / 1024.0 * (x * x2) - 0.0019368 * x4 - 0.0037290 * x * x4 * x4;
   }
 
   template <class T>
-  LocalSliding<T> average_over_contact(const T* p, const SlidingState<T>& x) const {
-    using std::abs;
-    const T v = abs(x.velocity), rim = rim_speed(p, x.disc_speed);
-    if (scalar_part(v) < scalar_part(rim)) {
-      const T u = v / rim, h = spin_factor(T(u * u));
+  static LocalSliding<T> average_over_contact(const T& rim, const T& speed) {
+    if (scalar_part(speed) < scalar_part(rim)) {
+      const T u = speed / rim, h = spin_factor(T(u * u));
       return {T(u * h), T(rim / h)};
     }
-    const T u = rim / v, h = spin_factor(T(u * u));
-    return {h, T(v / h)};
+    const T u = rim / speed, h = spin_factor(T(u * u));
+    return {h, T(speed / h)};
   }
 
   /// v_r [m/s] in stick at the friction `mu` and the speed `disc_speed` [rad/s] of the disc: omega R_c g^-1(mu/mu_s).
