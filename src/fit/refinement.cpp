@@ -103,8 +103,10 @@ ModelResiduals refine_look(FitContext& context, const Bounds& held, std::vector<
   std::vector<double> next = p;
   const double length = take_gauss_newton_step(*here, held, static_cast<double>(context.observations.size()), next);
   if (!std::isfinite(length)) return residuals;
-  if (residuals.squares_with_scatter(next.data()) <= kRiseOfLook * before) p = std::move(next);
-  return residuals;
+  ModelResiduals there = context.residuals(all);  // each keeps what it evaluated last
+  if (!(there.squares_with_scatter(next.data()) <= kRiseOfLook * before)) return residuals;
+  p = std::move(next);
+  return there;
 }
 
 }  // namespace tribofit

@@ -2,8 +2,8 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <complex>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -18,22 +18,35 @@ namespace tribofit {
 
 namespace {
 
-/// Amplitude of a line of that frequency in the residual, slips one after the other: |sum r e^(-i w t)|.
-double strength(const Observations& observations, std::span<const double> residual, double frequency) {
-  std::complex<double> total = 0;
+constexpr std::size_t kSideBySide = 4;  // a rotation waits for the one before it: others fill the time
+
+/// Amplitudes of lines of these frequencies in the residual, slips one after the other: |sum r e^(-i w t)|.
+std::array<double, kSideBySide> strengths(const Observations& observations, std::span<const double> residual,
+                                          const std::array<double, kSideBySide>& frequencies) {
+  std::array<double, kSideBySide> real{}, imaginary{}, x{}, y{}, turn_x{}, turn_y{}, out{};
   for (const auto& slip : observations.slips) {
     if (slip.record != 0 || slip.end == slip.begin) continue;
     // Equal steps within a slip: one rotation a value.
     const double step = (observations.time[slip.end - 1] - observations.time[slip.begin]) /
                         static_cast<double>(std::max<std::size_t>(1, slip.end - slip.begin - 1));
-    std::complex<double> phasor = std::polar(1.0, -(2 * std::numbers::pi) * frequency * observations.time[slip.begin]);
-    const std::complex<double> turn = std::polar(1.0, -(2 * std::numbers::pi) * frequency * step);
+    for (std::size_t k = 0; k < kSideBySide; ++k) {
+      const double w = -(2 * std::numbers::pi) * frequencies[k], at = w * observations.time[slip.begin];
+      x[k] = std::cos(at), y[k] = std::sin(at);
+      turn_x[k] = std::cos(w * step), turn_y[k] = std::sin(w * step);
+    }
     for (std::size_t i = slip.begin; i < slip.end; ++i) {
-      total += observations.weight[i] * residual[i] * phasor;
-      phasor *= turn;
+      const double value = observations.weight[i] * residual[i];
+      for (std::size_t k = 0; k < kSideBySide; ++k) {
+        real[k] += value * x[k];
+        imaginary[k] += value * y[k];
+        const double turned = x[k] * turn_x[k] - y[k] * turn_y[k];
+        y[k] = x[k] * turn_y[k] + y[k] * turn_x[k];
+        x[k] = turned;
+      }
     }
   }
-  return std::abs(total);
+  for (std::size_t k = 0; k < kSideBySide; ++k) out[k] = std::hypot(real[k], imaginary[k]);
+  return out;
 }
 
 /// Median time from break-away to the end of a slip [s]; 0 where fewer than three slips begin with a break-away.
@@ -175,8 +188,13 @@ SpectralLines strongest_lines(const Record& record, const Observations& observat
     const auto strongest = [&](double middle, double beside, double step) {
       std::vector<std::pair<double, double>> tried;
       for (double f = middle - beside; f <= middle + beside; f += step) tried.push_back({0, f});
-      run_tasks(tried.size(), threads,
-                [&](std::size_t k) { tried[k].first = strength(observations, residual, tried[k].second); });
+      run_tasks((tried.size() + kSideBySide - 1) / kSideBySide, threads, [&](std::size_t group) {
+        const std::size_t first = group * kSideBySide, count = std::min(kSideBySide, tried.size() - first);
+        std::array<double, kSideBySide> frequencies{};
+        for (std::size_t k = 0; k < count; ++k) frequencies[k] = tried[first + k].second;
+        const std::array<double, kSideBySide> own = strengths(observations, residual, frequencies);
+        for (std::size_t k = 0; k < count; ++k) tried[first + k].first = own[k];
+      });
       return tried.empty() ? std::pair{-1.0, coarse} : *std::max_element(tried.begin(), tried.end());
     };
     const double step = kPartsOfPeak * fine;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -95,14 +96,26 @@ struct ChannelDelay {
   template <class T>
   static T between(const Slip& slip, const std::vector<T>& mu, std::size_t low, const T& time) {
     const double step = slip.time[low + 1] - slip.time[low];
-    const T part = (time - slip.time[low]) / step;
+    const double part = (scalar_part(time) - slip.time[low]) / step;
+    const T change = (1 / step) * (time - scalar_part(time));  // of `part`: zero, with its derivatives
     const bool is_spline = slip.from_stick && slip.velocity_variance.empty() && low > 0 && low + 2 < mu.size() &&
                            std::abs(slip.time[low + 2] - slip.time[low - 1] - 3 * step) < 0.1 * step;
-    if (!is_spline) return mu[low] + (mu[low + 1] - mu[low]) * part;
-    const T rest = 1.0 - part, square = part * part, cube = square * part;
-    return (rest * rest * rest * mu[low - 1] + (3.0 * cube - 6.0 * square + 4.0) * mu[low] +
-            (-3.0 * cube + 3.0 * square + 3.0 * part + 1.0) * mu[low + 1] + cube * mu[low + 2]) /
-           6.0;
+    if (!is_spline) {
+      const T rise = mu[low + 1] - mu[low];
+      return mu[low] + rise * part + scalar_part(rise) * change;
+    }
+    const double rest = 1 - part, square = part * part, cube = square * part;
+    const std::array<double, 4> weights = {rest * rest * rest / 6, (3 * cube - 6 * square + 4) / 6,
+                                           (-3 * cube + 3 * square + 3 * part + 1) / 6, cube / 6};
+    const std::array<double, 4> slopes = {-0.5 * rest * rest, 1.5 * square - 2 * part, -1.5 * square + part + 0.5,
+                                          0.5 * square};
+    T mean = weights[0] * mu[low - 1];
+    double slope = slopes[0] * scalar_part(mu[low - 1]);
+    for (std::size_t k = 1; k < 4; ++k) {
+      mean += weights[k] * mu[low - 1 + k];
+      slope += slopes[k] * scalar_part(mu[low - 1 + k]);
+    }
+    return mean + slope * change;
   }
 
   template <class T>

@@ -36,12 +36,15 @@ struct StepChange {
             .hidden = {.sizes = {0.015, 0.03}, .either_sign = true, .others = {{.lower = 8, .upper = 32}}}};
   }
 
-  /// The change takes a thousandth of the time before it, shorter than a cycle, so that its time has a derivative.
+  /// The change takes a thousandth of the time before it, shorter than a cycle, so that its time has a derivative. Far
+  /// from it tanh is one to the last bit.
   template <class T>
   T modulate(const T* p, const SlidingState<T>& x, const T& mu) const {
     using std::abs;
     using std::tanh;
-    constexpr double kWidth = 2.5e-4, kNotZero = 1e-9;
+    constexpr double kWidth = 2.5e-4, kNotZero = 1e-9, kFar = 20;
+    const double late = x.time - scalar_part(p[1]), width = kWidth * (x.time + std::abs(scalar_part(p[1]))) + kNotZero;
+    if (std::abs(late) > kFar * width) return late > 0 ? T(mu + x.direction * p[0]) : mu;
     return mu + x.direction * p[0] * (0.5 + 0.5 * tanh((x.time - p[1]) / (kWidth * (x.time + abs(p[1])) + kNotZero)));
   }
 };
