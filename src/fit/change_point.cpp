@@ -82,7 +82,7 @@ std::optional<ChangePoint> change_point_of(const FrictionModel& model) {
 }
 
 double best_change(const ChangePoint& point, const ModelResiduals& residuals, const Observations& observations,
-                   const Bounds& bounds, std::vector<double> p) {
+                   const Bounds& bounds, std::vector<double> p, bool between_slips) {
   const double now = p[point.time], lower = bounds.lower[point.time], upper = bounds.upper[point.time];
   if (!(lower < upper)) return now;
   ChangeInTime scan(point, residuals, observations, std::move(p));
@@ -91,6 +91,7 @@ double best_change(const ChangePoint& point, const ModelResiduals& residuals, co
   const auto least = std::min_element(scan.squares.begin() + 1, scan.squares.end() - 1);
   const auto k = static_cast<std::size_t>(least - scan.squares.begin());  // before slip k
   double best = std::clamp(0.5 * (scan.end[k - 1] + scan.begin[k]), lower, upper);
+  if (between_slips) return best;
   double best_squares = scan.squares_at(best);
   const auto try_time = [&](double time) {
     if (time < lower || time > upper) return;

@@ -228,9 +228,13 @@ std::vector<Eigen::RowVectorXd> ModelResiduals::corrections(const std::vector<Bl
   return out;
 }
 
+bool ModelResiduals::was_evaluated(const double* p) const {
+  return last_.p.size() == parameter_count() && std::equal(last_.p.begin(), last_.p.end(), p);
+}
+
 const std::vector<ModelResiduals::Block>* ModelResiduals::white_blocks(const double* p) const {
   const std::size_t n = parameter_count();
-  if (last_.p.size() == n && std::equal(last_.p.begin(), last_.p.end(), p)) return &last_.blocks;
+  if (was_evaluated(p)) return &last_.blocks;
   std::vector<Block> blocks = std::exchange(last_, {}).blocks;  // copies of this for other threads stay small
   if (!compressed(p, true, blocks)) return nullptr;
   std::vector<Eigen::RowVectorXd> added = corrections(blocks);
@@ -351,15 +355,18 @@ double ModelResiduals::white_squares(const double* p) const {
 
 double ModelResiduals::squares_with_scatter(const double* p) const {
   const auto n = static_cast<Eigen::Index>(parameter_count());
-  const std::vector<Block>* blocks = white_blocks(p);
-  if (blocks == nullptr) return std::numeric_limits<double>::quiet_NaN();
   double sum = 0;
-  for (std::size_t k = 0; k < blocks->size(); ++k) {
-    const auto r = (*blocks)[k].col(n), g = (*blocks)[k].col(n + 1);
-    const double added = last_.added.empty() ? 0 : last_.added[k](n);
-    sum += (r - added * g).squaredNorm();
+  if (was_evaluated(p)) {
+    for (std::size_t k = 0; k < last_.blocks.size(); ++k) {
+      const auto r = last_.blocks[k].col(n), g = last_.blocks[k].col(n + 1);
+      const double added = last_.added.empty() ? 0 : last_.added[k](n);
+      sum += (r - added * g).squaredNorm();
+    }
+    return sum;
   }
-  return sum;
+  const std::vector<Block> blocks = residual_blocks(p);
+  for (const Block& block : blocks) sum += block.col(0).squaredNorm();
+  return blocks.empty() ? std::numeric_limits<double>::quiet_NaN() : sum;
 }
 
 std::vector<ModelResiduals::StickSquares> ModelResiduals::stick_squares(const double* p) const {

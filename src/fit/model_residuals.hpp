@@ -179,6 +179,7 @@ class ModelResiduals final : public Residuals {
   /// The same with the Jacobian, whitened; nullptr where the model is not finite. A search often asks once more for
   /// where another one ended.
   const std::vector<Block>* white_blocks(const double* p) const;
+  bool was_evaluated(const double* p) const;  ///< by white_blocks(), and last
   /// The same of the slips [begin, end).
   bool compress(std::size_t begin, std::size_t end, const double* p, bool with_jacobian, std::vector<Block>& blocks,
                 const FurtherColumns& further) const;

@@ -103,10 +103,8 @@ ModelResiduals refine_look(FitContext& context, const Bounds& held, std::vector<
   std::vector<double> next = p;
   const double length = take_gauss_newton_step(*here, held, static_cast<double>(context.observations.size()), next);
   if (!std::isfinite(length)) return residuals;
-  ModelResiduals there = context.residuals(all);  // each keeps what it evaluated last
-  if (!(there.squares_with_scatter(next.data()) <= kRiseOfLook * before)) return residuals;
-  p = std::move(next);
-  return there;
+  if (residuals.squares_with_scatter(next.data()) <= kRiseOfLook * before) p = std::move(next);
+  return residuals;  // with what it evaluated with derivatives last, which is wanted where it stands
 }
 
 }  // namespace tribofit
