@@ -101,13 +101,13 @@ std::size_t evidence_of(const Motion& motion, const Segmentation& segmentation) 
   return slip_ranges(motion, segmentation).size();
 }
 
-Curve curve_of(const Fit& fit, std::size_t points) {
+Curve curve_of(const Fit& fit, std::size_t points, int threads) {
   constexpr double kReach = 1.25;
   std::vector<double> velocity(points);
   for (std::size_t i = 0; i < points; ++i) {
     velocity[i] = kReach * fit.fastest * static_cast<double>(i) / static_cast<double>(points - 1);
   }
-  return law_curve(fit, velocity);
+  return law_curve(fit, velocity, threads);
 }
 
 Membership membership(const Motion& motion, const Segmentation& segmentation, const Fit* fit, std::size_t before) {

@@ -69,8 +69,8 @@ struct LawComparison {
 std::vector<LawComparison> compare_laws(std::span<const Fit> fits, std::size_t best);
 
 /// The law of a fit with its band at `points` speeds from rest to a quarter beyond the fastest slip, so that the
-/// extrapolation is seen as such.
-Curve curve_of(const Fit& fit, std::size_t points);
+/// extrapolation is seen as such. threads: as in law_curve().
+Curve curve_of(const Fit& fit, std::size_t points, int threads = 1);
 
 /// Cycle and held-out fold of every sample.
 struct Membership {

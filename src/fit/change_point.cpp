@@ -91,7 +91,6 @@ double best_change(const ChangePoint& point, const ModelResiduals& residuals, co
   const auto least = std::min_element(scan.squares.begin() + 1, scan.squares.end() - 1);
   const auto k = static_cast<std::size_t>(least - scan.squares.begin());  // before slip k
   double best = std::clamp(0.5 * (scan.end[k - 1] + scan.begin[k]), lower, upper);
-  if (between_slips) return best;
   double best_squares = scan.squares_at(best);
   const auto try_time = [&](double time) {
     if (time < lower || time > upper) return;
@@ -101,6 +100,7 @@ double best_change(const ChangePoint& point, const ModelResiduals& residuals, co
     best_squares = squares;
   };
   try_time(now);
+  if (between_slips) return best;
   constexpr int kParts = 8;
   double step = 0;
   for (const std::size_t slip : {k - 1, k}) {

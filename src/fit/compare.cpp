@@ -35,9 +35,10 @@ Comparison compare_held_out(const Fit& first, const Fit& second) {
 
 namespace {
 
-/// The observations of a record as the fit means them.
-Observations observed_for(const Fit& fit, const Motion& motion, const Segmentation& segmentation) {
-  Observations out = observe_motion(motion, segmentation, sensor_noise(motion, segmentation), fit.model.needs());
+/// The observations of a record as the fit means them. noise: which weighs break-aways.
+Observations observed_for(const Fit& fit, const Motion& motion, const Segmentation& segmentation,
+                          const SensorNoise& noise) {
+  Observations out = observe_motion(motion, segmentation, noise, fit.model.needs());
   refer_to_conditions_of(fit, out);
   return out;
 }
@@ -53,7 +54,7 @@ Fit evaluate_frozen(const Fit& fit, const Motion& motion, const Segmentation& se
     out.error = {unknown, unknown, unknown, unknown};
     return out;
   }
-  const Observations observations = observed_for(fit, motion, segmentation);
+  const Observations observations = observed_for(fit, motion, segmentation, sensor_noise(motion, segmentation));
   const Record one = {&motion, &segmentation};
   const FullRecord record(std::span(&one, 1), observations, fit.model.needs());
   const SampleErrors errors = sample_errors(fit.model, fit.values(), record, observations);
@@ -89,16 +90,17 @@ int angles_of_turn(const FrictionModel& model) {
 
 }  // namespace
 
-Curve law_curve(const Fit& fit, std::span<const double> velocity) {
+Curve law_curve(const Fit& fit, std::span<const double> velocity, int threads) {
   Curve curve;
   const std::vector<double> p = fit.values();
   if (p.empty()) return curve;
   curve.velocity.assign(velocity.begin(), velocity.end());
+  for (auto* side : {&curve.mu, &curve.lower95, &curve.upper95}) side->resize(velocity.size());
   const std::size_t n = p.size();
   // Two samples of a slip at constant speed that begins in steady state; a law of the disc angle stands for its mean
   // over a turn.
   const int turns = angles_of_turn(fit.model);
-  const auto steady = [&](const std::vector<double>& q, double v) {
+  const auto steady = [&](const FrictionModel& model, const std::vector<double>& q, double v) {
     const double time[] = {-1, 0}, speed[] = {v, v};
     double mu[2], sum = 0;
     for (int k = 0; k < turns; ++k) {
@@ -110,30 +112,34 @@ Curve law_curve(const Fit& fit, std::span<const double> velocity) {
       slip.time = time;
       slip.velocity = speed;
       slip.angle = angle;
-      evaluate<double>(fit.model, q.data(), slip, slip.velocity, mu);
+      evaluate<double>(model, q.data(), slip, slip.velocity, mu);
       sum += mu[1];
     }
     return sum / turns;
   };
   const double t = t_quantile_95(fit.degrees_of_freedom);
-  for (const double v : velocity) {
-    const double mu = steady(p, v);
+  constexpr std::size_t kOfTask = 16;  // speeds
+  run_tasks((velocity.size() + kOfTask - 1) / kOfTask, threads, [&](std::size_t task) {
+    const FrictionModel model(fit.model);  // its formulas must not be shared between threads
     std::vector<double> slope(n);
-    for (std::size_t k = 0; k < n; ++k) {
-      std::vector<double> q = p;
-      const double h = 1e-6 * std::max(std::abs(p[k]), 1e-6);
-      q[k] += h;
-      slope[k] = (steady(q, v) - mu) / h;
+    for (std::size_t at = task * kOfTask; at < std::min(velocity.size(), (task + 1) * kOfTask); ++at) {
+      const double v = velocity[at], mu = steady(model, p, v);
+      for (std::size_t k = 0; k < n; ++k) {
+        std::vector<double> q = p;
+        const double h = 1e-6 * std::max(std::abs(p[k]), 1e-6);
+        q[k] += h;
+        slope[k] = (steady(model, q, v) - mu) / h;
+      }
+      double variance = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = 0; j < n; ++j) variance += slope[i] * slope[j] * fit.covariance[i * n + j];
+      }
+      const double half = t * std::sqrt(std::max(0.0, variance));
+      curve.mu[at] = mu;
+      curve.lower95[at] = mu - half;
+      curve.upper95[at] = mu + half;
     }
-    double variance = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t j = 0; j < n; ++j) variance += slope[i] * slope[j] * fit.covariance[i * n + j];
-    }
-    const double half = t * std::sqrt(std::max(0.0, variance));
-    curve.mu.push_back(mu);
-    curve.lower95.push_back(mu - half);
-    curve.upper95.push_back(mu + half);
-  }
+  });
   return curve;
 }
 
@@ -142,7 +148,7 @@ std::vector<double> predict(const Fit& fit, const Motion& motion, const Segmenta
   std::vector<double> mu(motion.size(), std::numeric_limits<double>::quiet_NaN());
   const std::vector<double> p = fit.values();
   if (p.empty()) return mu;
-  const Observations observations = observed_for(fit, motion, segmentation);
+  const Observations observations = observed_for(fit, motion, segmentation, {});  // nothing is weighed
   const Record one = {&motion, &segmentation};
   const FullRecord samples(std::span(&one, 1), observations, fit.model.needs());
   const std::span<const Observations::SlipObservation> slips = observations.slips;

@@ -176,11 +176,11 @@ class ModelResiduals final : public Residuals {
             bool plain = false) const;
   bool compressed(const double* p, bool with_jacobian, std::vector<Block>& blocks,
                   const FurtherColumns& further = {}) const;
-  /// The same with the Jacobian, whitened; nullptr where the model is not finite. A search often asks once more for
+  bool was_evaluated(const double* p) const;  ///< by white_blocks(), and last
+  /// Blocks with the Jacobian, whitened; nullptr where the model is not finite. A search often asks once more for
   /// where another one ended.
   const std::vector<Block>* white_blocks(const double* p) const;
-  bool was_evaluated(const double* p) const;  ///< by white_blocks(), and last
-  /// The same of the slips [begin, end).
+  /// As compressed(), of the slips [begin, end).
   bool compress(std::size_t begin, std::size_t end, const double* p, bool with_jacobian, std::vector<Block>& blocks,
                 const FurtherColumns& further) const;
   /// Into how many parts the slips are best split.

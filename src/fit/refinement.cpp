@@ -104,7 +104,7 @@ ModelResiduals refine_look(FitContext& context, const Bounds& held, std::vector<
   const double length = take_gauss_newton_step(*here, held, static_cast<double>(context.observations.size()), next);
   if (!std::isfinite(length)) return residuals;
   if (residuals.squares_with_scatter(next.data()) <= kRiseOfLook * before) p = std::move(next);
-  return residuals;  // with what it evaluated with derivatives last, which is wanted where it stands
+  return residuals;  // it still holds the Jacobian at the old p, which a step that is not taken needs again
 }
 
 }  // namespace tribofit

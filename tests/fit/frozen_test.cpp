@@ -106,6 +106,29 @@ TEST(Predictions, OfAFormulaAreTheSameForAnyNumberOfThreads) {
   }
 }
 
+TEST(LawCurve, IsTheSameForAnyNumberOfThreads) {
+  Fit fit;
+  fit.model = FrictionModel(ExponentialLaw{}, {Formula("hump = a*exp(-((v-v0)/w)^2); a=0.02, v0=25mm/s, w=6mm/s")});
+  std::vector<double> p = kTruth;
+  for (const double value : {0.02, 0.025, 0.006}) p.push_back(value);
+  fit.covariance.resize(p.size() * p.size());
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    fit.parameters.emplace_back();
+    fit.parameters.back().value = p[k];
+    fit.covariance[k * p.size() + k] = 1e-6 * p[k] * p[k];
+  }
+  std::vector<double> speeds;
+  for (int i = 0; i < 2000; ++i) speeds.push_back(2.5e-5 * i);
+  const Curve alone = law_curve(fit, speeds);
+  ASSERT_EQ(alone.mu.size(), speeds.size());
+  for (const int threads : {2, 3, 8}) {
+    const Curve shared = law_curve(fit, speeds, threads);
+    EXPECT_EQ(shared.mu, alone.mu) << threads;
+    EXPECT_EQ(shared.lower95, alone.lower95) << threads;
+    EXPECT_EQ(shared.upper95, alone.upper95) << threads;
+  }
+}
+
 /// Over a turn a wave averages out, also one of a dozen periods, and what presses at one angle keeps its share.
 TEST(LawCurve, OfAFormulaOfTheAngleIsItsMeanOverATurn) {
   const auto mean_of = [](const std::string& formula, const std::vector<double>& values) {

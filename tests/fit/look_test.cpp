@@ -73,6 +73,12 @@ TEST(NormalEquations, AreTheSameBehindAnEvaluationAndWithoutOne) {
       EXPECT_EQ(found[k].gradient, truth[k].gradient) << again;
     }
   }
+  // Squares with scatter in them are those of values alone, and differ from the whitened ones.
+  ModelResiduals unseen(model, observations, all);
+  unseen.whiten(whitening, true);
+  const double squares = fresh.squares_with_scatter(p.data());
+  EXPECT_NEAR(unseen.squares_with_scatter(p.data()), squares, 1e-10 * squares);
+  EXPECT_GT(std::abs(unseen.white_squares(p.data()) - squares), 1e-6 * squares);
   // The curvature is that of the rows the solver sees.
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   ASSERT_TRUE(evaluated.evaluate(p.data(), residual.data(), jacobian.data()));

@@ -134,38 +134,70 @@ TEST_P(EveryEffect, SaysHowLargePeopleMeetIt) {
   }
 }
 
-TEST_P(EveryEffect, DerivativesAreThoseOfTheValues) {
+/// Derivatives of friction along a slip, and of its break-away level, against differences.
+void expect_derivatives(const FrictionModel& model, const std::vector<double>& p, const Slip& slip) {
   using Dual = ceres::Jet<double, 8>;
+  ASSERT_LE(p.size(), 8u);
+  std::vector<Dual> dual, mu(slip.size()), velocity;
+  for (std::size_t k = 0; k < p.size(); ++k) dual.emplace_back(p[k], static_cast<int>(k));
+  for (const double v : slip.velocity) velocity.emplace_back(v);
+  evaluate<Dual>(model, dual.data(), slip, velocity, mu);
+  const Dual level = break_away_level(model, dual.data(), slip);
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    std::vector<double> high = p, low = p, mu_high(slip.size()), mu_low(slip.size());
+    const double h = 1e-5 * std::max(std::abs(p[k]), 1e-4);
+    high[k] += h;
+    low[k] -= h;
+    evaluate<double>(model, high.data(), slip, slip.velocity, mu_high);
+    evaluate<double>(model, low.data(), slip, slip.velocity, mu_low);
+    double scale = 1e-12;
+    for (std::size_t i = 0; i < slip.size(); ++i) scale = std::max(scale, std::abs(mu_high[i] - mu_low[i]) / (2 * h));
+    for (std::size_t i = 0; i < slip.size(); i += 7) {
+      const double slope = (mu_high[i] - mu_low[i]) / (2 * h);
+      EXPECT_NEAR(mu[i].v[static_cast<Eigen::Index>(k)], slope, 1e-4 * scale + 1e-9 / h)
+          << "parameter " << k << " sample " << i;
+    }
+    const double slope =
+        (break_away_level(model, high.data(), slip) - break_away_level(model, low.data(), slip)) / (2 * h);
+    EXPECT_NEAR(level.v[static_cast<Eigen::Index>(k)], slope, 1e-6 * std::abs(slope) + 1e-9 / h);
+    EXPECT_EQ(mu[5].a, mu[5].a);  // finite: NaN is not equal to itself
+  }
+}
+
+TEST_P(EveryEffect, DerivativesAreThoseOfTheValues) {
   for (const double direction : {1.0, -1.0}) {
     const samples::ExampleSlip example_slip(400, 0.08, 0.1, direction);
-    const Slip& slip = example_slip.slip;
-    const std::vector<double> p = example();
-    ASSERT_LE(p.size(), 8u);
-    std::vector<Dual> dual, mu(slip.size()), velocity;
-    for (std::size_t k = 0; k < p.size(); ++k) dual.emplace_back(p[k], static_cast<int>(k));
-    for (const double v : slip.velocity) velocity.emplace_back(v);
-    evaluate<Dual>(model_, dual.data(), slip, velocity, mu);
-    const Dual level = break_away_level(model_, dual.data(), slip);
-    for (std::size_t k = 0; k < p.size(); ++k) {
-      std::vector<double> high = p, low = p, mu_high(slip.size()), mu_low(slip.size());
-      const double h = 1e-5 * std::max(std::abs(p[k]), 1e-4);
-      high[k] += h;
-      low[k] -= h;
-      evaluate<double>(model_, high.data(), slip, slip.velocity, mu_high);
-      evaluate<double>(model_, low.data(), slip, slip.velocity, mu_low);
-      double scale = 1e-12;
-      for (std::size_t i = 0; i < slip.size(); ++i) scale = std::max(scale, std::abs(mu_high[i] - mu_low[i]) / (2 * h));
-      for (std::size_t i = 0; i < slip.size(); i += 7) {
-        const double slope = (mu_high[i] - mu_low[i]) / (2 * h);
-        EXPECT_NEAR(mu[i].v[static_cast<Eigen::Index>(k)], slope, 1e-4 * scale + 1e-9 / h)
-            << "parameter " << k << " sample " << i;
-      }
-      const double slope =
-          (break_away_level(model_, high.data(), slip) - break_away_level(model_, low.data(), slip)) / (2 * h);
-      EXPECT_NEAR(level.v[static_cast<Eigen::Index>(k)], slope, 1e-6 * std::abs(slope) + 1e-9 / h);
-      EXPECT_EQ(mu[5].a, mu[5].a);  // finite: NaN is not equal to itself
-    }
+    expect_derivatives(model_, example(), example_slip.slip);
   }
+}
+
+TEST(Derivatives, OfLocalSpeedsReachEveryEffectOnThem) {
+  const FrictionModel model(ExponentialLaw{},
+                            {make_effect("contact-spin"), make_effect("stribeck-exponent"), make_effect("viscous")});
+  const std::vector<double> lead_time = {2.998, 2.999}, lead_velocity = {2e-4, 4e-4};
+  for (const double direction : {1.0, -1.0}) {
+    samples::ExampleSlip made(400, 0.08, 0.1, direction);
+    made.slip.disc_speed = 2;
+    for (const double radius : {3e-3, 2e-5}) {  // at the smaller, readings about rest are noise
+      expect_derivatives(model, {0.509, 0.318, 52.14, radius, 1.4, 0.8}, made.slip);
+    }
+    std::vector<double> signed_lead = lead_velocity;
+    for (double& v : signed_lead) v *= direction;
+    made.slip.lead_time = lead_time;
+    made.slip.lead_velocity = signed_lead;
+    expect_derivatives(model, {0.509, 0.318, 52.14, 3e-3, 1.4, 0.8}, made.slip);
+  }
+}
+
+TEST(Derivatives, OfADelayBetweenMeansAndWithoutAStick) {
+  const FrictionModel model(ExponentialLaw{}, {make_effect("channel-delay")});
+  samples::ExampleSlip made(400, 0.08, 0.1, 1);
+  const std::vector<double> variance(400, 1e-8), p = {0.509, 0.318, 52.14, 1.13e-3};
+  made.slip.from_stick = false;
+  expect_derivatives(model, p, made.slip);  // straight lines between samples
+  made.slip.from_stick = true;
+  made.slip.velocity_variance = variance;
+  expect_derivatives(model, p, made.slip);
 }
 
 TEST_P(EveryEffect, IsFiniteAtRestAndAtHighSpeed) {
@@ -303,6 +335,23 @@ TEST(Catalogue, EffectsSayTheSameOfAWholeSlipAsOfEverySample) {
     });
   }
   EXPECT_EQ(with_both, (std::vector<std::string>{"runout", "disc-pattern", "ringing", "interference"}));
+}
+
+TEST(Catalogue, AContactThatSpinsSlidesLocallyForEveryEffectOnItsSpeed) {
+  const FrictionModel model(ExponentialLaw{},
+                            {make_effect("contact-spin"), make_effect("stribeck-exponent"), make_effect("viscous")});
+  const std::vector<double> p = {0.509, 0.318, 52.14, 3e-3, 1.4, 0.8};
+  for (const double direction : {1.0, -1.0}) {
+    samples::ExampleSlip made(400, 0.08, 0.1, direction);
+    made.slip.disc_speed = 2;  // the rim turns at 6 mm/s
+    std::vector<double> mu(made.slip.size());
+    evaluate<double>(model, p.data(), made.slip, made.slip.velocity, mu);
+    const LawValues<double> law = law_for(model, p.data(), made.slip);
+    for (std::size_t i = 0; i < mu.size(); ++i) {
+      const double alone = steady_friction(model, p.data(), law, made.slip.at(i, made.slip.velocity[i]));
+      EXPECT_NEAR(mu[i], direction * alone, 1e-13) << i;
+    }
+  }
 }
 
 TEST(Catalogue, HasOneEffectForWhatOthersAskFor) {

@@ -191,7 +191,8 @@ Comparison compare_held_out(const Fit& first, const Fit& second);
 struct Curve {
   std::vector<double> velocity, mu, lower95, upper95;
 };
-Curve law_curve(const Fit& fit, std::span<const double> velocity);
+/// threads: as in predict().
+Curve law_curve(const Fit& fit, std::span<const double> velocity, int threads = 1);
 
 /// Model friction at every sample of the slips (NaN in stick and outside), signed, at the N0 and T0 of the fit.
 /// record: which of the records that were fitted together this is, from 0; it has phases of its own. threads: 0 for as

@@ -35,8 +35,8 @@ struct Motion;
 ///        reduced speed x = steepness v of the base law, where it has one
 ///   T rim_speed(p, double disc_speed), LocalSliding<T> average_over_contact(const T& rim, const T& speed)
 ///        local speeds within a contact whose rim turns at that speed: f is taken at `speed`, and `share` of it acts
-///        along v_r; with them T slowest_reading(const T& rim), below which a reading of v_r is noise about rest. All
-///        but rim_speed see no parameters, and are static
+///        along v_r; with them T slowest_reading(const T& rim), below which a reading of v_r is noise about rest. The
+///        last two see no parameters and are static
 ///   T renewal_distance(p)
 ///        contacts with an age, d theta/dt = 1 - v theta / D with this distance D: the base law is taken at D / theta
 ///        instead of v (see contact_age.hpp)

@@ -13,6 +13,7 @@
 #include "tribofit/friction/hooks.hpp"
 #include "tribofit/friction/memory.hpp"
 #include "tribofit/friction/model.hpp"
+#include "tribofit/friction/one_derivative.hpp"
 #include "tribofit/friction/read_through_low_pass.hpp"
 
 namespace tribofit {
@@ -134,11 +135,13 @@ LocalSlip<T> local_slip(const FrictionModel& model, const T* p, const Slip& slip
     if constexpr (hooks::AveragesOverContact<E, T>) {
       using N = WithOneDerivative<T>;
       const T rim = effect.rim_speed(q, slip.disc_speed);
-      const N variable = as_variable(rim), slowest = E::slowest_reading(variable);
+      const N rim_variable = as_variable(rim), slowest = E::slowest_reading(rim_variable);
+      out.velocity.reserve(velocity.size());
+      out.share.reserve(velocity.size());
       for (const T& v : velocity) {
         const double speed = slip.speed(scalar_part(v));
         const LocalSliding<N> local =
-            E::average_over_contact(variable, speed < scalar_part(slowest) ? slowest : N(speed));
+            E::average_over_contact(rim_variable, speed < scalar_part(slowest) ? slowest : N(speed));
         out.velocity.push_back(slip.direction * by_parameters(local.speed, rim));
         out.share.push_back(by_parameters(local.share, rim));
       }
@@ -166,12 +169,12 @@ T peak_friction(const FrictionModel& model, const T* p, const LawValues<T>& law,
   for (std::size_t k = 0; k < values.size(); ++k) values[k] = scalar_part(p[k]);
   LawValues<double> law_values;
   for (std::size_t k = 0; k < law.q.size(); ++k) law_values.q[k] = scalar_part(law.q[k]);
-  double peak = 0, rims = 0;
+  double peak = 0, speed_in_rims = 0;
   for (double v = 0.8; v < 40; v *= 1.15) {
     const double mu = friction_at(values.data(), law_values, v * scalar_part(rim));
-    if (mu > peak) peak = mu, rims = v;
+    if (mu > peak) peak = mu, speed_in_rims = v;
   }
-  return peak > 0 ? friction_at(p, law, T(rims * rim)) : T(0.0);
+  return peak > 0 ? friction_at(p, law, T(speed_in_rims * rim)) : T(0.0);
 }
 
 }  // namespace detail
@@ -187,19 +190,17 @@ void steady_friction(const FrictionModel& model, const T* p, const LawValues<T>&
   if (is_local) velocity = local.velocity;
   for (std::size_t i = 0; i < n; ++i) mu[i] = slip.speed(velocity[i]);
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
-    if constexpr (hooks::HasContactAge<E, T>) {
-      if (!is_local) detail::equivalent_speeds(effect.renewal_distance(q), slip, velocity, mu);
-    }
+    if constexpr (hooks::HasContactAge<E, T>) detail::equivalent_speeds(effect.renewal_distance(q), slip, velocity, mu);
   });
   detail::reduce_speed(model, law, mu.first(n));
-  bool bent = is_local;  // the law is taken elsewhere than where readings spread about v_r
+  bool skips_variance = is_local;  // it is that of v_r, not of a local or bent speed
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::TransformsSpeed<E, T>) {
       for (std::size_t i = 0; i < n; ++i) mu[i] = effect.transform_speed(q, mu[i]);
-      bent = true;
+      skips_variance = true;
     }
   });
-  detail::apply_law(model, law, bent ? std::span<const double>() : slip.velocity_variance, mu.first(n));
+  detail::apply_law(model, law, skips_variance ? std::span<const double>() : slip.velocity_variance, mu.first(n));
   for_each_effect(model, p, [&]<class E>(const E& effect, const T* q) {
     if constexpr (hooks::Steadies<E, T>) {
       for (std::size_t i = 0; i < n; ++i) mu[i] = effect.steady(q, slip.at(i, velocity[i]), mu[i]);
@@ -315,8 +316,8 @@ T break_away_level(const FrictionModel& model, const T* p, const Slip& slip) {
 /// Friction of the model at every sample of a slip, signed as v_r is.
 ///
 /// p: parameters in SI, model.parameters().size() of them, of which those of slip.record are taken; velocity: v_r
-/// [m/s], a constant: contacts with an age take no derivatives of it; mu: one value a sample, written. Cost: linear in
-/// samples; one pass per memory.
+/// [m/s], a constant: contacts with an age, or that spin, take no derivatives of it; mu: one value a sample, written.
+/// Cost: linear in samples; one pass per memory.
 template <class T>
 void evaluate(const FrictionModel& model, const T* p, const Slip& slip, std::span<const T> velocity, std::span<T> mu) {
   std::vector<T> own;

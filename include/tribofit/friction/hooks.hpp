@@ -21,7 +21,8 @@ concept TransformsSpeed = requires(const E e, const T* p, const T& x) {
 };
 template <class E, class T>
 concept AveragesOverContact = requires(const E e, const T* p, const T& x) {
-  e.average_over_contact(e.rim_speed(p, 0.0), x);
+  E::average_over_contact(e.rim_speed(p, 0.0), x);
+  E::slowest_reading(x);
 };
 template <class E, class T>
 concept Steadies = requires(const E e, const T* p, const SlidingState<T>& x, const T& mu) {

@@ -1,9 +1,6 @@
 #pragma once
 
-#include <cmath>
 #include <type_traits>
-
-#include "tribofit/friction/slip.hpp"
 
 namespace tribofit::detail {
 
@@ -32,10 +29,11 @@ struct OneDerivative {
   friend OneDerivative operator/(double s, OneDerivative x) { return OneDerivative(s) / x; }
 };
 
-/// What such a quantity is computed in where parameters are of the type T.
+/// What such a number is where parameters are of the type T: of plain numbers no derivative is wanted.
 template <class T>
 using WithOneDerivative = std::conditional_t<std::is_same_v<T, double>, double, OneDerivative>;
 
+/// The quantity itself, by which derivatives are taken.
 template <class T>
 WithOneDerivative<T> as_variable(const T& quantity) {
   if constexpr (std::is_same_v<T, double>) {
@@ -45,7 +43,7 @@ WithOneDerivative<T> as_variable(const T& quantity) {
   }
 }
 
-/// The same with its derivatives by all that `quantity` depends on.
+/// A number that depends on `quantity`, with its derivatives by all that `quantity` depends on.
 template <class T>
 T by_parameters(const WithOneDerivative<T>& x, const T& quantity) {
   if constexpr (std::is_same_v<T, double>) {

@@ -109,7 +109,7 @@ void add_curves(const DrawnTrace& d, Chart& chart) {
     const bool looped = is_beside && has_loop(*fit);
     Stroke stroke = is_beside ? model_stroke(k) : kPublished;
     if (looped) stroke.dash = Dash::dotted;
-    add_curve(*fit, curve_of(*fit, kCurvePoints), stroke, is_beside && !looped, chart,
+    add_curve(*fit, curve_of(*fit, kCurvePoints, d.threads), stroke, is_beside && !looped, chart,
               looped ? ", steady sliding" : "");
   }
 }
@@ -261,7 +261,7 @@ Chart points_chart(const DrawnTrace& d) {
   add_points(d, motion.friction, motion.friction_std_error, 0, chart);
   const std::vector<double> speeds = speeds_of(slowest * kMillimetre, d.fastest * kMillimetre, logarithmic);
   for (std::size_t k = 0; k < d.curves.size(); ++k) {
-    add_curve(*d.curves[k], law_curve(*d.curves[k], speeds), model_stroke(k), k < 2, chart);
+    add_curve(*d.curves[k], law_curve(*d.curves[k], speeds, d.threads), model_stroke(k), k < 2, chart);
   }
   if (d.models.empty()) return chart;
   add_residual_panel(chart);

@@ -10,6 +10,7 @@
 #include "report/charts/styles.hpp"
 #include "report/numbers.hpp"
 #include "statistics/thinning.hpp"
+#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/spectrum.hpp"
 
 namespace tribofit {
@@ -184,9 +185,10 @@ DrawnTrace::DrawnTrace(const Identification& identification, const std::vector<c
     : trace(identification), models(beside), curves(laws), id(std::move(prefix)), share(part), threads(draw_on) {
   pieces = slip_branches(trace.motion, trace.segmentation);
   fastest = fastest_of(trace.motion, pieces) / kMillimetre;
-  for (const Fit* model : models) {
-    predictions.push_back(predict(*model, trace.motion, trace.segmentation, record, threads));
-  }
+  predictions.resize(models.size());
+  run_tasks(models.size(), threads, [&](std::size_t k) {
+    predictions[k] = predict(*models[k], trace.motion, trace.segmentation, record, threads);
+  });
 }
 
 std::size_t DrawnTrace::bins(std::size_t whole) const {

@@ -59,8 +59,8 @@ const tableWidths = new ResizeObserver((entries) => {
 function table(caption, header, rows, numeric = []) {
   const order = columnOrder(header, numeric);
   const isLong = (k) => rows.some((row) => String(row[k] ?? "").length > 16);
-  const align = (k) => (numeric.includes(k) ? { className: "number" } : isLong(k) ? { className: "words" } : {});
-  const cell = (tag, content, k, more = {}) => make(tag, { ...align(k), ...more }, symbols(String(content)));
+  const aligned = header.map((_, k) => (numeric.includes(k) ? { className: "number" } : isLong(k) ? { className: "words" } : {}));
+  const cell = (tag, content, k, more = {}) => make(tag, { ...aligned[k], ...more }, symbols(String(content)));
   const whole = make("table", {}, caption ? make("caption", {}, symbols(caption)) : null,
     make("thead", {}, make("tr", {}, ...order.map((k) => (header[k] ? cell("th", header[k], k, { scope: "col" }) : make("td"))))),
     make("tbody", {}, ...rows.map((row) => make("tr", {}, ...order.map((k) => cell("td", row[k] ?? "", k))))));

@@ -67,12 +67,12 @@ struct ChannelDelay {
         const double step = slip.time[n - 1] - slip.time[n - 2];
         const double known = slip.restick_time - 0.5 * step;
         const double begin = known > slip.time[n - 1] ? known : slip.time[n - 1];  // NaN: not known
-        const T part = (late - begin) / step;
+        const T fraction = (late - begin) / step;
         mu[i] = true_mu[n - 1] + (true_mu[n - 1] - true_mu[n - 2]) * ((late - slip.time[n - 1]) / step);
-        if (scalar_part(part) >= 1) {
+        if (scalar_part(fraction) >= 1) {
           mu[i] = slip.tail_friction + 0.0 * p[0];
-        } else if (scalar_part(part) > 0) {
-          mu[i] = (1.0 - part) * mu[i] + part * slip.tail_friction;
+        } else if (scalar_part(fraction) > 0) {
+          mu[i] = (1.0 - fraction) * mu[i] + fraction * slip.tail_friction;
         }
         continue;
       }
@@ -96,19 +96,19 @@ struct ChannelDelay {
   template <class T>
   static T between(const Slip& slip, const std::vector<T>& mu, std::size_t low, const T& time) {
     const double step = slip.time[low + 1] - slip.time[low];
-    const double part = (scalar_part(time) - slip.time[low]) / step;
-    const T change = (1 / step) * (time - scalar_part(time));  // of `part`: zero, with its derivatives
+    const double fraction = (scalar_part(time) - slip.time[low]) / step;
+    const T change = (1 / step) * (time - scalar_part(time));  // of `fraction`: zero, with its derivatives
     const bool is_spline = slip.from_stick && slip.velocity_variance.empty() && low > 0 && low + 2 < mu.size() &&
                            std::abs(slip.time[low + 2] - slip.time[low - 1] - 3 * step) < 0.1 * step;
     if (!is_spline) {
       const T rise = mu[low + 1] - mu[low];
-      return mu[low] + rise * part + scalar_part(rise) * change;
+      return mu[low] + rise * fraction + scalar_part(rise) * change;
     }
-    const double rest = 1 - part, square = part * part, cube = square * part;
+    const double rest = 1 - fraction, square = fraction * fraction, cube = square * fraction;
     const std::array<double, 4> weights = {rest * rest * rest / 6, (3 * cube - 6 * square + 4) / 6,
-                                           (-3 * cube + 3 * square + 3 * part + 1) / 6, cube / 6};
-    const std::array<double, 4> slopes = {-0.5 * rest * rest, 1.5 * square - 2 * part, -1.5 * square + part + 0.5,
-                                          0.5 * square};
+                                           (-3 * cube + 3 * square + 3 * fraction + 1) / 6, cube / 6};
+    const std::array<double, 4> slopes = {-0.5 * rest * rest, 1.5 * square - 2 * fraction,
+                                          -1.5 * square + fraction + 0.5, 0.5 * square};
     T mean = weights[0] * mu[low - 1];
     double slope = slopes[0] * scalar_part(mu[low - 1]);
     for (std::size_t k = 1; k < 4; ++k) {
