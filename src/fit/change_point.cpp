@@ -82,7 +82,7 @@ std::optional<ChangePoint> change_point_of(const FrictionModel& model) {
 }
 
 double best_change(const ChangePoint& point, const ModelResiduals& residuals, const Observations& observations,
-                   const Bounds& bounds, std::vector<double> p, bool between_slips) {
+                   const Bounds& bounds, std::vector<double> p) {
   const double now = p[point.time], lower = bounds.lower[point.time], upper = bounds.upper[point.time];
   if (!(lower < upper)) return now;
   ChangeInTime scan(point, residuals, observations, std::move(p));
@@ -100,7 +100,6 @@ double best_change(const ChangePoint& point, const ModelResiduals& residuals, co
     best_squares = squares;
   };
   try_time(now);
-  if (between_slips) return best;
   constexpr int kParts = 8;
   double step = 0;
   for (const std::size_t slip : {k - 1, k}) {

@@ -149,9 +149,7 @@ void settle(FitContext& context, const std::vector<std::size_t>& slips, const st
   for (int pass = 0; pass < most && !is_settled; ++pass) {
     context.whitening = plain.whitening_at(p.data());
     if (change) {  // slips at levels of their own would hide a change that is misplaced
-      const bool is_first_of_look = look && pass == 0;  // a search and a finer look follow
-      p[change->time] = best_change(*change, context.residuals(all, false), context.observations, context.bounds, p,
-                                    is_first_of_look);
+      p[change->time] = best_change(*change, context.residuals(all, false), context.observations, context.bounds, p);
       held.lower[change->time] = held.upper[change->time] = p[change->time];
     }
     if (pass + 1 == most) break;

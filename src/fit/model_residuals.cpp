@@ -364,8 +364,7 @@ double ModelResiduals::squares_with_scatter(const double* p) const {
     }
     return sum;
   }
-  const std::vector<Block> blocks =
-      residual_blocks(p);  // last_ stays: its blocks are small beside the values of a slip
+  const std::vector<Block> blocks = residual_blocks(p);
   for (const Block& block : blocks) sum += block.col(0).squaredNorm();
   return blocks.empty() ? std::numeric_limits<double>::quiet_NaN() : sum;
 }

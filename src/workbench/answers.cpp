@@ -154,7 +154,8 @@ std::optional<std::string> WrittenSections::text_of(const std::shared_ptr<const 
 void WrittenSections::keep(const std::shared_ptr<const ReportSection>& section, const std::string& text) {
   constexpr std::size_t kMostKept = 4;
   const std::lock_guard lock(mutex_);
-  std::erase_if(kept_, [&](const auto& one) { return one.first == section; });  // of another page that asked with this
+  std::erase_if(kept_,
+                [&](const auto& one) { return one.first == section; });  // another page may have asked for it meanwhile
   if (kept_.size() >= kMostKept) kept_.erase(kept_.begin());
   kept_.emplace_back(section, text);
 }

@@ -27,7 +27,7 @@ Json rungs_json(const WorkbenchSession& session);
 
 std::string text_of_answer(const Json& json);
 
-/// The text of sections that many answers share, so that few of them are written again.
+/// The text of sections that many answers share, kept so that they are seldom written twice.
 class WrittenSections {
  public:
   std::optional<std::string> text_of(const std::shared_ptr<const ReportSection>& section);

@@ -12,7 +12,7 @@ namespace {
 
 using namespace tribofit;
 
-/// Parameters of the law, and `extra` of the effect, without scatter of break-away or with.
+/// With noise and scatter of break-away. extra: parameters of the effect, beside those of the law.
 synthetic::Record record_of(const FrictionModel& model, const std::vector<double>& extra, std::size_t cycles) {
   std::vector<double> truth = synthetic::table4_15mm(model.law());
   truth.insert(truth.end(), extra.begin(), extra.end());

@@ -121,7 +121,7 @@ T steady_friction(const FrictionModel& model, const T* p, const LawValues<T>& la
 
 namespace detail {
 
-/// A slip as a contact sees it that slides at several speeds.
+/// A slip as seen by a contact whose parts slide at several speeds.
 template <class T>
 struct LocalSlip {
   std::vector<T> velocity, share;  ///< of every sample, as in LocalSliding; empty: all of the contact slides at v_r
