@@ -49,18 +49,26 @@ void ask_about_group(const DiagnosedTraces& diagnosed, OpenQuestion& question) {
   }
 }
 
-/// The likeliest of those that are possible.
+/// The likeliest of those that are possible, and what is possible too and looks like it: a run that shows that there is
+/// something must also show which of them.
 void ask_about_possible(const DiagnosedTraces& diagnosed, OpenQuestion& question) {
-  const EffectFinding* likely = nullptr;
+  std::vector<const EffectFinding*> possible;
   for (const EffectFinding& finding : diagnosed.diagnosis.effects) {
-    if (finding.status != EffectStatus::possible || finding.parameters.empty()) continue;
-    if (!effect_of(diagnosed, finding.key)) continue;
-    if (likely == nullptr || finding.p_value < likely->p_value) likely = &finding;
+    const bool asked = finding.status == EffectStatus::possible && !finding.parameters.empty();
+    if (asked && effect_of(diagnosed, finding.key)) possible.push_back(&finding);
   }
-  if (likely == nullptr) return;
+  if (possible.empty()) return;
+  std::stable_sort(possible.begin(), possible.end(),
+                   [](const auto* a, const auto* b) { return a->p_value < b->p_value; });
+  const std::vector<LookAlike> alike = look_alikes(possible.front()->key);
   question.kind = QuestionKind::possible;
-  question.asked.push_back(*effect_of(diagnosed, likely->key));
-  question.p_value = likely->p_value;
+  for (const EffectFinding* finding : possible) {
+    const bool looks_like_it =
+        std::any_of(alike.begin(), alike.end(), [&](const LookAlike& other) { return other.key == finding->key; });
+    if (finding != possible.front() && !looks_like_it) continue;
+    question.asked.push_back(*effect_of(diagnosed, finding->key));
+    question.p_values.push_back(finding->p_value);
+  }
 }
 
 void ask(const DiagnosedTraces& diagnosed, OpenQuestion& question) {
@@ -118,7 +126,7 @@ double least_odds_of_nothing(double p_value) {
 }
 
 /// How likely each answer is by the held-out errors so far: exp(-behind/(2 t)) with the temper t, since no model is
-/// the exact one that a likelihood takes it for; of an effect that is possible by its p-value.
+/// the exact one that a likelihood takes it for; of effects that are possible by their p-values.
 void weigh(const DiagnosedTraces& diagnosed, const PlanOptions& options, OpenQuestion& question) {
   std::vector<double> weights(question.models.size(), 1.0);
   question.behind.assign(weights.size(), 0.0);
@@ -130,7 +138,13 @@ void weigh(const DiagnosedTraces& diagnosed, const PlanOptions& options, OpenQue
       weights[k] = std::exp(-std::clamp(now.effects[k].behind, 0.0, kMostBehind) / (2 * kTemper));
     }
   } else {
-    weights[1] = least_odds_of_nothing(question.p_value) / kOddsOfSomething;
+    const double least = least_odds_of_nothing(question.p_values.front());
+    double something = 0;
+    for (std::size_t k = 0; k < question.p_values.size(); ++k) {
+      weights[k] = least / least_odds_of_nothing(question.p_values[k]);
+      something += weights[k];
+    }
+    weights.back() = something * least / kOddsOfSomething;
   }
   double sum = 0;
   for (const double w : weights) sum += w;

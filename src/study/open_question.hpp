@@ -14,20 +14,20 @@ namespace tribofit {
 struct OpenQuestion {
   QuestionKind kind = QuestionKind::nothing;
   Law law = ExponentialLaw{};
-  std::vector<Effect> beside;  ///< effects found that are not asked about
-  std::vector<Effect> asked;   ///< one of them is there; of QuestionKind::possible one, and that may be there or not
-  std::vector<ModelInQuestion> models;      ///< for each asked; where one is possible, with it and without it
+  std::vector<Effect> beside;               ///< effects found that are not asked about
+  std::vector<Effect> asked;                ///< one of them is there; of QuestionKind::possible one or none
+  std::vector<ModelInQuestion> models;      ///< for each asked; where they are possible, the last without any
   std::vector<IdentifiedMachine> machines;  ///< for each model
   std::vector<PlausibleDraws> draws;        ///< the same
   RecordToContinue record;
-  std::size_t trace = 0;  ///< whose conditions the runs go on from
-  std::string reason;     ///< why nothing can be simulated
-  double p_value = 1;     ///< of an effect that is possible
+  std::size_t trace = 0;              ///< whose conditions the runs go on from
+  std::string reason;                 ///< why nothing can be simulated
+  std::vector<double> p_values = {};  ///< of effects that are possible, the least first
   /// Held-out squares of each model behind the best by the records so far, over the noise of a difference (see Ruling);
-  /// 0 where one is possible.
+  /// 0 where they are possible.
   std::vector<double> behind;
 
-  bool without(std::size_t model) const { return kind == QuestionKind::possible && model == 1; }
+  bool without(std::size_t model) const { return kind == QuestionKind::possible && model == asked.size(); }
 };
 
 /// The first group of the ladder that is open, else an effect that is possible.

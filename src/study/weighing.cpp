@@ -104,8 +104,7 @@ std::vector<SimulatedRun> runs_of(const OpenQuestion& question, const Experiment
 }
 
 double calibrated_chance(double expected) {
-  const double sure = std::clamp(expected, 1 - kSurestChance, kSurestChance);
-  return 1 / (1 + std::exp(-(kSlopeOfChances * std::log(sure / (1 - sure)) + kShiftOfChances)));
+  return kGuesses + (1 - kGuesses - kLapses) * expected;
 }
 
 double chance_beyond(double sigmas) {
@@ -124,7 +123,9 @@ Evidence weigh_draw(const DiagnosedTraces& diagnosed, const OpenQuestion& questi
   if (!out.simulated) return out;
   const diagnosis::Ruling ruling = diagnosis::rule_between(with_runs(diagnosed, runs), question.law, question.beside,
                                                            question.asked, options.instruments);
-  const diagnosis::Ruling::OfEffect& own = ruling.effects[std::min(truth, ruling.effects.size() - 1)];
+  const auto least = std::min_element(ruling.effects.begin(), ruling.effects.end(),
+                                      [](const auto& a, const auto& b) { return a.p_value < b.p_value; });
+  const diagnosis::Ruling::OfEffect& own = question.without(truth) ? *least : ruling.effects[truth];
   out.p_value = own.p_value;
   out.least_by_size = ruling.least_by_size;
   out.ruled_out = !own.passes && own.p_value < diagnosis::Limits{}.p_value;
@@ -149,15 +150,12 @@ double chance_to_name(const OpenQuestion& question, std::size_t truth, const std
   const auto ruled_out = std::count_if(seen.begin(), seen.end(), [](const Evidence& draw) { return draw.ruled_out; });
   double chance = (1 - static_cast<double>(ruled_out) / static_cast<double>(seen.size())) *
                   chance_of_p(seen, Limits{}.p_value, lengthening.of_cycles);
-  if (question.kind == QuestionKind::group) {
-    std::vector<double> of_rivals;
-    for (std::size_t rival = 0; rival < question.models.size(); ++rival) {
-      const double now = question.behind[rival] - question.behind[truth];
-      if (rival != truth) of_rivals.push_back(chance_to_distinguish(seen, rival, now, lengthening));
-    }
-    chance = std::min(chance, chance_of_all(of_rivals));
+  std::vector<double> of_rivals;
+  for (std::size_t rival = 0; rival < question.asked.size(); ++rival) {
+    const double now = question.behind[rival] - question.behind[truth];
+    if (rival != truth) of_rivals.push_back(chance_to_distinguish(seen, rival, now, lengthening));
   }
-  return simulated * chance;
+  return simulated * std::min(chance, chance_of_all(of_rivals));
 }
 
 std::optional<Answer> diagnose_simulated(const DiagnosedTraces& diagnosed, const OpenQuestion& question,
@@ -175,25 +173,26 @@ std::optional<Answer> diagnose_simulated(const DiagnosedTraces& diagnosed, const
   FitOptions look = options.fit;  // which effects are named is wanted, and no figure of a rung
   look.starts = 0;
   const Diagnosis d = diagnose(records, laws, {}, options.instruments, look, inner).diagnosis;
-  const std::string key = describe(question.asked[std::min(truth, question.asked.size() - 1)]).key;
-  const auto among = [&](const Rung& rung, const std::string& k) {
-    return rung.added == k || std::find(rung.equivalent.begin(), rung.equivalent.end(), k) != rung.equivalent.end();
+  const auto rung_with = [&](const std::string& key) {
+    return std::find_if(d.ladder.begin(), d.ladder.end(), [&](const Rung& rung) {
+      const auto& others = rung.equivalent;
+      return rung.added == key || std::find(others.begin(), others.end(), key) != others.end();
+    });
   };
-  const auto held = std::find_if(d.ladder.begin(), d.ladder.end(), [&](const Rung& rung) { return among(rung, key); });
+  std::vector<std::string> asked;
+  for (const Effect& effect : question.asked) asked.push_back(describe(effect).key);
+  const bool any =
+      std::any_of(asked.begin(), asked.end(), [&](const std::string& key) { return rung_with(key) != d.ladder.end(); });
   if (question.without(truth)) {
-    if (held != d.ladder.end()) return Answer::wrong;
-    const auto finding =
-        std::find_if(d.effects.begin(), d.effects.end(), [&](const EffectFinding& f) { return f.key == key; });
-    return finding != d.effects.end() && finding->status == EffectStatus::possible ? Answer::open : Answer::named;
+    const bool possible = std::any_of(d.effects.begin(), d.effects.end(), [&](const EffectFinding& finding) {
+      const bool is_asked = std::find(asked.begin(), asked.end(), finding.key) != asked.end();
+      return is_asked && finding.status == EffectStatus::possible;
+    });
+    return any ? Answer::wrong : possible ? Answer::open : Answer::named;
   }
-  if (held != d.ladder.end()) return held->added == key && held->equivalent.empty() ? Answer::named : Answer::open;
-  for (const Effect& other : question.asked) {
-    const std::string rival = describe(other).key;
-    for (const Rung& rung : d.ladder) {
-      if (rival != key && among(rung, rival)) return Answer::wrong;
-    }
-  }
-  return Answer::open;
+  const auto held = rung_with(asked[truth]);
+  if (held == d.ladder.end()) return any ? Answer::wrong : Answer::open;
+  return held->added == asked[truth] && held->equivalent.empty() ? Answer::named : Answer::open;
 }
 
 }  // namespace tribofit

@@ -17,7 +17,7 @@ std::vector<SimulatedRun> runs_of(const OpenQuestion& question, const Experiment
 struct Evidence {
   bool simulated = true;   ///< false: no run of it could be simulated
   double known = -1;       ///< chance of an experiment that is not simulated; below 0: it is
-  double p_value = 1;      ///< of the true effect; of the one that is possible, where that is asked about
+  double p_value = 1;      ///< of the true effect; where nothing is there, the least of those that are possible
   bool ruled_out = false;  ///< it would not be named though its p-value is small enough: implausible, or too small
   /// By how much the held-out squares of each rival are behind those of the truth, over the noise of a difference (see
   /// Ruling); infinite for a rival that would not be named anyway, and for the truth itself.
