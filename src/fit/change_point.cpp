@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tribofit/statistics/change_point.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 
@@ -43,25 +44,36 @@ class ChangeInTime {
   std::vector<double> begin, end;  ///< of each slip, in order of time [s]; empty where the model is not finite
   std::vector<double> squares;     ///< of all slips when the change comes just before each, or after the last
 
-  /// Squares of all slips.
-  double squares_at(double time) {
+  /// Squares of all slips; several threads may ask.
+  double squares_at(double time) const {
     constexpr std::ptrdiff_t kBeside = 2;  // slips before and after it
     const auto next = std::upper_bound(begin.begin(), begin.end(), time) - begin.begin();
     std::vector<Eigen::MatrixXd> blocks = after_;
-    p_[point_.time] = time;
+    const ModelResiduals residuals = residuals_;  // formulas must not be shared between threads
+    const std::vector<double> p = with_change_at(time);
     for (std::ptrdiff_t i = 0; i < std::min(next + kBeside, std::ssize(order_)); ++i) {
       const std::size_t k = order_[static_cast<std::size_t>(i)];
-      blocks[k] = i < next - kBeside ? before_[k] : residuals_.residual_block(k, p_.data());
+      blocks[k] = i < next - kBeside ? before_[k] : residuals.residual_block(k, p.data());
       if (blocks[k].size() == 0) return std::numeric_limits<double>::infinity();
     }
-    const std::vector<double> left = residuals_.squares_of(std::move(blocks));
+    const std::vector<double> left = residuals.squares_of(std::move(blocks));
     return std::accumulate(left.begin(), left.end(), 0.0);
   }
 
+  std::vector<double> squares_at(const std::vector<double>& times, int threads) const {
+    std::vector<double> out(times.size());
+    run_tasks(times.size(), threads, [&](std::size_t k) { out[k] = squares_at(times[k]); });
+    return out;
+  }
+
  private:
-  std::vector<Eigen::MatrixXd> blocks_at(double time) {
-    p_[point_.time] = time;
-    return residuals_.residual_blocks(p_.data());
+  std::vector<double> with_change_at(double time) const {
+    std::vector<double> p = p_;
+    p[point_.time] = time;
+    return p;
+  }
+  std::vector<Eigen::MatrixXd> blocks_at(double time) const {
+    return residuals_.residual_blocks(with_change_at(time).data());
   }
 
   const ChangePoint& point_;
@@ -82,42 +94,41 @@ std::optional<ChangePoint> change_point_of(const FrictionModel& model) {
 }
 
 double best_change(const ChangePoint& point, const ModelResiduals& residuals, const Observations& observations,
-                   const Bounds& bounds, std::vector<double> p) {
+                   const Bounds& bounds, std::vector<double> p, int threads) {
   const double now = p[point.time], lower = bounds.lower[point.time], upper = bounds.upper[point.time];
   if (!(lower < upper)) return now;
-  ChangeInTime scan(point, residuals, observations, std::move(p));
+  const ChangeInTime scan(point, residuals, observations, std::move(p));
   if (scan.begin.size() < 2) return now;
   // Not before the first slip nor after the last: that is no change.
   const auto least = std::min_element(scan.squares.begin() + 1, scan.squares.end() - 1);
   const auto k = static_cast<std::size_t>(least - scan.squares.begin());  // before slip k
   double best = std::clamp(0.5 * (scan.end[k - 1] + scan.begin[k]), lower, upper);
-  double best_squares = scan.squares_at(best);
-  const auto try_time = [&](double time) {
-    if (time < lower || time > upper) return;
-    const double squares = scan.squares_at(time);
-    if (!(squares < best_squares)) return;
-    best = time;
-    best_squares = squares;
+  double best_squares = std::numeric_limits<double>::infinity();
+  const auto try_times = [&](std::vector<double> times) {
+    std::erase_if(times, [&](double time) { return time < lower || time > upper; });
+    const std::vector<double> squares = scan.squares_at(times, threads);
+    for (std::size_t t = 0; t < times.size(); ++t) {
+      if (squares[t] < best_squares) best = times[t], best_squares = squares[t];
+    }
   };
-  try_time(now);
   constexpr int kParts = 8;
   double step = 0;
+  std::vector<double> first = {best, now};
   for (const std::size_t slip : {k - 1, k}) {
     step = (scan.end[slip] - scan.begin[slip]) / kParts;
-    for (int part = 0; part < kParts; ++part) try_time(scan.begin[slip] + (part + 0.5) * step);
+    for (int part = 0; part < kParts; ++part) first.push_back(scan.begin[slip] + (part + 0.5) * step);
   }
+  try_times(std::move(first));
   for (int halving = 0; halving < 6; ++halving) {
     step /= 2;
-    const double middle = best;
-    try_time(middle - step);
-    try_time(middle + step);
+    try_times({best - step, best + step});
   }
   return best;
 }
 
 std::pair<double, double> interval_of_change(const ChangePoint& point, const ModelResiduals& residuals,
                                              const Observations& observations, const NormalEquations& equations,
-                                             const Bounds& bounds, std::vector<double> p) {
+                                             const Bounds& bounds, std::vector<double> p, int threads) {
   const double best = p[point.time];
   const auto size = static_cast<Eigen::Index>(point.size);
   double spread = 0, known = 0;
@@ -125,7 +136,7 @@ std::pair<double, double> interval_of_change(const ChangePoint& point, const Mod
     spread += std::pow(equations.gradient[c](size), 2);
     known += equations.curvature[c](size, size);
   }
-  ChangeInTime scan(point, residuals, observations, std::move(p));
+  const ChangeInTime scan(point, residuals, observations, std::move(p));
   if (scan.squares.empty()) return {bounds.lower[point.time], bounds.upper[point.time]};
   double least = scan.squares_at(best);
   for (std::size_t k = 1; k + 1 < scan.squares.size(); ++k) least = std::min(least, scan.squares[k]);
@@ -149,8 +160,11 @@ std::pair<double, double> interval_of_change(const ChangePoint& point, const Mod
   const double latest = last > 0 ? std::max(best, scan.end[last - 1]) : best;
   while (before < slips && scan.begin[before] < earliest) ++before;
   while (after > 0 && scan.end[after - 1] > latest) --after;
-  const double lower = before > 0 ? wall(earliest, scan.begin[before - 1]) : bounds.lower[point.time];
-  const double upper = after < slips ? wall(latest, scan.end[after]) : bounds.upper[point.time];
+  double lower = bounds.lower[point.time], upper = bounds.upper[point.time];
+  run_tasks(2, threads, [&](std::size_t side) {
+    if (side == 0 && before > 0) lower = wall(earliest, scan.begin[before - 1]);
+    if (side == 1 && after < slips) upper = wall(latest, scan.end[after]);
+  });
   return {lower, upper};
 }
 

@@ -25,15 +25,15 @@ std::optional<ChangePoint> change_point_of(const FrictionModel& model);
 
 /// Time of change within its bounds that leaves least, the other parameters staying [s]; as it is where the bounds hold
 /// it. residuals: over all slips of the observations.
-/// Cost: two evaluations, and some 120 of single slips.
+/// Cost: two evaluations, and some 120 of single slips, which threads share.
 double best_change(const ChangePoint& point, const ModelResiduals& residuals, const Observations& observations,
-                   const Bounds& bounds, std::vector<double> p);
+                   const Bounds& bounds, std::vector<double> p, int threads);
 
 /// 95 % interval of the time of change [s], within the bounds. Squares may rise by 7.35 times the variance that the
 /// cycles show for the size of the change (B. E. Hansen, Econometrica 68 (2000) 575, doi:10.1111/1468-0262.00124), so
 /// coloured noise widens it.
 std::pair<double, double> interval_of_change(const ChangePoint& point, const ModelResiduals& residuals,
                                              const Observations& observations, const NormalEquations& equations,
-                                             const Bounds& bounds, std::vector<double> p);
+                                             const Bounds& bounds, std::vector<double> p, int threads);
 
 }  // namespace tribofit

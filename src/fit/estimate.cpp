@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <numeric>
 #include <optional>
@@ -50,6 +51,13 @@ std::vector<double> start_at_line(const ModelResiduals& residuals, std::vector<d
   return nearest;
 }
 
+SpectralLines lines_about_mean_curve(const FitContext& context, double lowest, double highest) {
+  const Observations& observations = context.observations;
+  const std::shared_ptr<LinesOfRecord> known = observations.noise.empty() ? nullptr : observations.noise[0].lines;
+  const std::shared_ptr<LinesOfRecord> lines = known ? known : std::make_shared<LinesOfRecord>();
+  return lines->find(context.records[0], observations, lowest, highest, context.evaluation.threads);
+}
+
 /// A spectral line is narrower than any random start would find: the strongest lines about the mean friction over
 /// speed are starts too.
 void add_starts_at_lines(const FitContext& context, std::vector<std::vector<double>>& starts) {
@@ -61,9 +69,7 @@ void add_starts_at_lines(const FitContext& context, std::vector<std::vector<doub
     const auto phase = std::find_if(parameters.begin(), parameters.end(), [&](const FrictionModel::Slot& slot) {
       return slot.effect == parameters[k].effect && slot.parameter.periodic;
     });
-    const SpectralLines lines =
-        strongest_lines(context.records[0], context.observations, about_mean_curve(context.observations),
-                        context.bounds.lower[k], context.bounds.upper[k], context.evaluation.threads);
+    const SpectralLines lines = lines_about_mean_curve(context, context.bounds.lower[k], context.bounds.upper[k]);
     const std::vector<std::size_t> some = some_slips(context.observations, kValuesToCompare);
     const std::size_t before = starts.size(), count = lines.frequencies.size();
     starts.resize(before + count, from_data);
@@ -134,7 +140,8 @@ std::vector<double> best_of_starts(const FitContext& context, const std::vector<
 }
 
 /// Passes over these slips from p, each with the scatter of break-away as the one before it leaves it, until two are
-/// alike; for a look one. Sets the whitening; where a change point ends is held in `held`.
+/// alike; for a look one, whose end is as far as it goes. Sets the whitening; where a change point ends is held in
+/// `held`.
 void settle(FitContext& context, const std::vector<std::size_t>& slips, const std::optional<ChangePoint>& change,
             Bounds& held, std::vector<double>& p) {
   const bool look = context.is_look();
@@ -143,17 +150,17 @@ void settle(FitContext& context, const std::vector<std::size_t>& slips, const st
   // The direction in which a slip scatters is that of the law, known better once it has been taken out. Where scatter
   // is most of what a law leaves, three passes still hold something of the start.
   const ModelResiduals plain(context.model, context.observations, all, context.evaluation);
-  constexpr int kFewestPasses = 3, kMostPasses = 20, kPassesOfLook = 2;
-  const int most = look ? kPassesOfLook : kMostPasses;
+  constexpr int kFewestPasses = 3, kMostPasses = 20;
   bool is_settled = false;
-  for (int pass = 0; pass < most && !is_settled; ++pass) {
+  for (int pass = 0; pass < kMostPasses && !is_settled; ++pass) {
     context.whitening = plain.whitening_at(p.data());
-    if (change) {  // slips at levels of their own would hide a change that is misplaced
-      p[change->time] = best_change(*change, context.residuals(all, false), context.observations, context.bounds, p);
-      held.lower[change->time] = held.upper[change->time] = p[change->time];
-    }
-    if (pass + 1 == most) break;
+    if (change) find_change(context, *change, held, p);
+    if (pass + 1 == kMostPasses) break;
     std::vector<double> next = context.solve(slips, p, search, held).p;
+    if (look) {
+      p = std::move(next);
+      break;
+    }
     is_settled = pass + 2 >= kFewestPasses && are_alike(p, next);
     p = std::move(next);
   }
@@ -205,9 +212,8 @@ Solution joint_estimate(FitContext& context, Fit& fit) {
   }
   if (look || !is_short) {
     out.result.converged = true;
-    if (change && look) held.lower[change->time] = held.upper[change->time] = out.result.p[change->time];
     if (look) {
-      out.residuals.emplace(refine_look(context, held, out.result.p));
+      out.residuals.emplace(refine_look(context, change, held, out.result.p));
       return out;
     }
     if (refine(context, change, held, out.result.p)) return out;

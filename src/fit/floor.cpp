@@ -1,6 +1,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <span>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "errors.hpp"
 #include "limits.hpp"
 #include "points.hpp"
+#include "spectral_lines.hpp"
 #include "statistics/linear_algebra.hpp"
 #include "tribofit/fit/fit.hpp"
 #include "tribofit/statistics/parallel.hpp"
@@ -229,6 +231,7 @@ RecordNoise noise_of(const Motion& motion, const Segmentation& segmentation, int
     }
     stop_point();
   });
+  noise.lines = std::make_shared<LinesOfRecord>();
   return noise;
 }
 

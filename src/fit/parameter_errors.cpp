@@ -109,9 +109,9 @@ void fill_parameters(const FitContext& context, const Solution& solution, const 
   open_intervals(freedom.groups, fit);
   if (!freedom.change) return;
   FitParameter& time = fit.parameters[freedom.change->time];
-  std::tie(time.lower95, time.upper95) =
-      interval_of_change(*freedom.change, context.residuals(all_slips(context.observations), false),
-                         context.observations, equations, context.bounds, solution.values());
+  std::tie(time.lower95, time.upper95) = interval_of_change(
+      *freedom.change, context.residuals(all_slips(context.observations), false), context.observations, equations,
+      context.bounds, solution.values(), context.evaluation.threads);
   time.std_error = (time.upper95 - time.lower95) / 4;
 }
 

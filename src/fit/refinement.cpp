@@ -69,6 +69,13 @@ double take_gauss_newton_step(const Linearisation& here, const Bounds& bounds, d
 
 }  // namespace
 
+void find_change(const FitContext& context, const ChangePoint& change, Bounds& held, std::vector<double>& p) {
+  // Slips at levels of their own would hide a change that is misplaced.
+  const ModelResiduals residuals = context.residuals(all_slips(context.observations), false);
+  p[change.time] = best_change(change, residuals, context.observations, context.bounds, p, context.evaluation.threads);
+  held.lower[change.time] = held.upper[change.time] = p[change.time];
+}
+
 bool refine(FitContext& context, const std::optional<ChangePoint>& change, Bounds& held, std::vector<double>& p) {
   const std::vector<std::size_t> all = all_slips(context.observations);
   const ModelResiduals plain(context.model, context.observations, all, context.evaluation);
@@ -76,10 +83,7 @@ bool refine(FitContext& context, const std::optional<ChangePoint>& change, Bound
   double last = std::numeric_limits<double>::infinity();
   for (int step = 0; step < kMostRefiningSteps; ++step) {
     context.whitening = plain.whitening_at(p.data());
-    if (change) {
-      p[change->time] = best_change(*change, context.residuals(all, false), context.observations, context.bounds, p);
-      held.lower[change->time] = held.upper[change->time] = p[change->time];
-    }
+    if (change) find_change(context, *change, held, p);
     const std::optional<Linearisation> here = linearise(context.residuals(all), p);
     if (!here) break;
     const double length = take_gauss_newton_step(*here, held, static_cast<double>(context.observations.size()), p);
@@ -92,10 +96,12 @@ bool refine(FitContext& context, const std::optional<ChangePoint>& change, Bound
   return false;
 }
 
-ModelResiduals refine_look(FitContext& context, const Bounds& held, std::vector<double>& p) {
+ModelResiduals refine_look(FitContext& context, const std::optional<ChangePoint>& change, Bounds& held,
+                           std::vector<double>& p) {
   const std::vector<std::size_t> all = all_slips(context.observations);
   context.whitening =
       ModelResiduals(context.model, context.observations, all, context.evaluation).whitening_at(p.data());
+  if (change) find_change(context, *change, held, p);
   ModelResiduals residuals = context.residuals(all);
   const std::optional<Linearisation> here = linearise(residuals, p);
   if (!here) return residuals;

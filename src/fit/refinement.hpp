@@ -18,6 +18,10 @@ bool refine(FitContext& context, const std::optional<ChangePoint>& change, Bound
 
 /// The same for a look: one such step, where it leads no further from the data. Sets the whitening of the context to
 /// that at the p given. Returns the residuals of all slips with it.
-ModelResiduals refine_look(FitContext& context, const Bounds& held, std::vector<double>& p);
+ModelResiduals refine_look(FitContext& context, const std::optional<ChangePoint>& change, Bounds& held,
+                           std::vector<double>& p);
+
+/// Moves the time of the change in p to where it leaves least, with the whitening of the context, and holds it there.
+void find_change(const FitContext& context, const ChangePoint& change, Bounds& held, std::vector<double>& p);
 
 }  // namespace tribofit

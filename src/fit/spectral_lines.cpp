@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "limits.hpp"
+#include "starts.hpp"
 #include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
@@ -204,6 +205,18 @@ SpectralLines strongest_lines(const Record& record, const Observations& observat
   for (const auto& [strength, frequency] : found) lines.frequencies.push_back(frequency);
   lines.places = std::max(1.0, (highest - lowest) * motion.duration());
   return lines;
+}
+
+SpectralLines LinesOfRecord::find(const Record& record, const Observations& observations, double lowest, double highest,
+                                  int threads) {
+  const std::lock_guard lock(looking_);
+  const bool known =
+      found_ && found_->values == observations.size() && found_->lowest == lowest && found_->highest == highest;
+  if (!known) {
+    found_ = {observations.size(), lowest, highest,
+              strongest_lines(record, observations, about_mean_curve(observations), lowest, highest, threads)};
+  }
+  return found_->lines;
 }
 
 SpectralLines strongest_ringing(const Observations& observations, std::span<const double> residual, double lowest) {

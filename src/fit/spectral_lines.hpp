@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,6 +22,24 @@ struct SpectralLines {
 /// for each of the observations, signed. Only the first record is looked at.
 SpectralLines strongest_lines(const Record& record, const Observations& observations, std::span<const double> residual,
                               double lowest, double highest, int threads = 1);
+
+/// The strongest lines of a record about its mean friction over speed: no model changes them, so that all fits to the
+/// record share them. Several threads may ask.
+class LinesOfRecord {
+ public:
+  /// As strongest_lines() finds them; those found last are kept.
+  SpectralLines find(const Record& record, const Observations& observations, double lowest, double highest,
+                     int threads);
+
+ private:
+  struct Found {
+    std::size_t values = 0;  ///< of the observations
+    double lowest = 0, highest = 0;
+    SpectralLines lines;
+  };
+  std::mutex looking_;  ///< guards found_
+  std::optional<Found> found_;
+};
 
 /// The strongest line that runs through the sticks, where it is most of the noise there.
 struct LineInStick {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,6 +48,8 @@ struct SensorNoise {
   double any() const { return between > rmse ? between : rmse; }
 };
 
+class LinesOfRecord;
+
 /// The noise of a record, as it shows without any model: a property of the data that all models share.
 struct RecordNoise {
   SensorNoise sensor;
@@ -54,6 +57,7 @@ struct RecordNoise {
   FlickerNoise flicker;
   double line = 0;         ///< frequency of a line that makes most of the noise in stick [Hz]; 0: none was looked for
   double beside_line = 0;  ///< sensor noise without it [1 or N]
+  std::shared_ptr<LinesOfRecord> lines = {};  ///< about the mean curve, sought by the first fit that asks for them
 };
 
 /// Cost: linear in samples, and as much as that of a fit: found once for all models.

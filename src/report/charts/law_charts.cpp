@@ -12,6 +12,7 @@
 #include "statistics/thinning.hpp"
 #include "tribofit/campaign/figures.hpp"
 #include "tribofit/diagnosis/residual_map.hpp"
+#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 namespace {
@@ -52,10 +53,41 @@ Stroke on_branch(std::size_t model, const BranchStyle& branch) {
   return stroke;
 }
 
+/// Whether what a model says along the slips is more than a function of the speed.
+bool has_loop(const Fit& fit) {
+  return !fit.model.effects().empty();
+}
+
+/// Bands over speed of what was measured, and of each model along the slips, where it has a loop, and of what it
+/// leaves.
+struct LawBands {
+  std::vector<BranchBand> measured;
+  std::vector<std::vector<BranchBand>> loops, residuals;
+};
+
+LawBands bands_of(const DrawnTrace& d) {
+  const std::size_t models = d.models.size();
+  LawBands out{{}, std::vector<std::vector<BranchBand>>(models), std::vector<std::vector<BranchBand>>(models)};
+  const auto over_speed = [&](const std::vector<double>& values) {
+    return bands_over_speed(d.trace.motion, d.pieces, values, kSpeedBins);
+  };
+  run_tasks(1 + 2 * models, d.threads, [&](std::size_t k) {
+    const std::size_t m = (k - 1) / 2;
+    if (k == 0) {
+      out.measured = over_speed(d.trace.motion.friction);
+    } else if (k % 2 == 0) {
+      out.residuals[m] = over_speed(residuals_of(d, m));
+    } else if (has_loop(*d.models[m])) {
+      out.loops[m] = over_speed(d.predictions[m]);
+    }
+  });
+  return out;
+}
+
 /// Residuals of each model on both branches, in its colour and switched with its line.
-void add_residuals(const DrawnTrace& d, Chart& chart) {
+void add_residuals(const DrawnTrace& d, const LawBands& bands, Chart& chart) {
   for (std::size_t m = 0; m < d.models.size(); ++m) {
-    for (const auto& [branch, band] : bands_over_speed(d.trace.motion, d.pieces, residuals_of(d, m), kSpeedBins)) {
+    for (const auto& [branch, band] : bands.residuals[m]) {
       ChartLine& line = add_band(curve_name(*d.models[m]), band, on_branch(m, style_of(branch, kBranches)), chart);
       line.panel = 1;
       line.listed = false;
@@ -64,16 +96,10 @@ void add_residuals(const DrawnTrace& d, Chart& chart) {
   }
 }
 
-/// Whether what a model says along the slips is more than a function of the speed.
-bool has_loop(const Fit& fit) {
-  return !fit.model.effects().empty();
-}
-
 /// What models with effects say along the slips, branch by branch: the loop that the measurement goes through, too.
-void add_loops(const DrawnTrace& d, Chart& chart) {
+void add_loops(const DrawnTrace& d, const LawBands& bands, Chart& chart) {
   for (std::size_t m = 0; m < d.models.size(); ++m) {
-    if (!has_loop(*d.models[m])) continue;
-    for (const auto& [branch, band] : bands_over_speed(d.trace.motion, d.pieces, d.predictions[m], kSpeedBins)) {
+    for (const auto& [branch, band] : bands.loops[m]) {
       ChartLine& line = add_band(curve_name(*d.models[m]), band, on_branch(m, style_of(branch, kBranches)), chart);
       line.stroke.width = 2;
       line.low.clear(), line.high.clear();
@@ -232,18 +258,18 @@ Chart law_chart(const DrawnTrace& d) {
                                "along the slips, through both branches; its line of steady sliding, at the start of "
                                "the record and over a turn of the disc, can be switched on.",
                                false);
-  const Motion& motion = d.trace.motion;
-  for (const auto& [branch, band] : bands_over_speed(motion, d.pieces, motion.friction, kSpeedBins)) {
+  const LawBands bands = bands_of(d);
+  for (const auto& [branch, band] : bands.measured) {
     const BranchStyle& style = style_of(branch, kBranches);
     add_band("measured, " + std::string(style.name), band, style.stroke, chart);
   }
   add_break_aways(d, chart);
-  add_loops(d, chart);
+  add_loops(d, bands, chart);
   add_curves(d, chart);
   shade_beyond(d, chart);
   if (d.models.empty()) return chart;
   add_residual_panel(chart);
-  add_residuals(d, chart);
+  add_residuals(d, bands, chart);
   return chart;
 }
 
