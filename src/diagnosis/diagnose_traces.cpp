@@ -22,8 +22,6 @@
 #include "kinematic_effects.hpp"
 #include "limits.hpp"
 #include "tribofit/ingest/units.hpp"
-#include "tribofit/segmentation/load_coupling.hpp"
-#include "tribofit/statistics/distributions.hpp"
 #include "unrecorded_load.hpp"
 
 namespace tribofit::diagnosis {
@@ -57,17 +55,6 @@ void correct_plateau(const Instruments& instruments, PreparedTrace& prepared) {
   MotionOptions corrected = prepared.motion;
   corrected.plateau = gain ? PlateauCorrection::gain : PlateauCorrection::radius;
   prepared.trace = prepared.prepare(corrected);
-}
-
-/// A load that follows friction within every cycle would pass for friction that follows the load.
-void remove_load_coupling(Identification& trace) {
-  if (!trace.analysed) return;
-  const Estimate kappa = load_coupling(trace.motion, trace.segmentation);
-  if (!(std::abs(kappa.value) > limits::kLeastCoupling)) return;
-  const double chance = limits::kChance / static_cast<double>(effect_catalogue().size());
-  if (kappa.std_error > 0 && t_p_value(kappa.value / kappa.std_error, kappa.degrees_of_freedom) > chance) return;
-  uncouple_load(kappa.value, trace.motion);
-  trace.load_coupling = kappa;
 }
 
 /// Prepares a trace anew as its options say, with what follows from the record itself.
@@ -126,6 +113,35 @@ bool undo_needless_corrections(const IdentifyOptions& options, const Diagnosed& 
     undone = true;
   }
   return undone;
+}
+
+using Corrected = std::pair<std::size_t, Identification>;  ///< a corrected trace, and which it was
+
+/// Takes back corrections of plateaus below omega r that differ from that of a run at the same radius and speed: a
+/// wrong radius or gain moves both alike, creep in stick each in its own way. Returns the corrected ones.
+std::vector<Corrected> doubt_corrections(const IdentifyOptions& options, std::vector<PreparedTrace>& traces) {
+  std::vector<Corrected> out;
+  if (options.motion.plateau != PlateauCorrection::none) return out;
+  for (std::size_t k = 0; k < traces.size(); ++k) {
+    const Motion& motion = traces[k].trace.motion;
+    if (motion.plateau_correction == PlateauCorrection::none || !(motion.plateau_ratio < 1)) continue;
+    const bool differs = std::any_of(traces.begin(), traces.end(), [&](const PreparedTrace& other) {
+      return plateaus_disagree(motion, other.trace.motion);
+    });
+    if (!differs) continue;
+    Identification plain = traces[k].prepare(traces[k].motion);
+    if (!plain.analysed || plain.motion.plateau_correction != PlateauCorrection::none) continue;
+    remove_load_coupling(plain);
+    out.emplace_back(k, std::exchange(traces[k].trace, std::move(plain)));
+  }
+  return out;
+}
+
+/// The error on held-out cycles of what was found where that creeps in stick; infinite where it does not.
+double held_out_of_creep(const Diagnosed& diagnosed) {
+  const bool creeps = !diagnosed.fits.empty() && diagnosed.fits.back().model.acts_in_stick() &&
+                      !diagnosed.fits.back().parameters.empty();
+  return creeps ? diagnosed.fits.back().error.held_out_rmse : std::numeric_limits<double>::infinity();
 }
 
 /// What the base law leaves where nothing of the motion is undone; nothing where nothing was, or where the record
@@ -271,7 +287,23 @@ DiagnosedTraces diagnose_traces(std::vector<PreparedTrace> traces, const Identif
       return diagnose(records, options.laws, effects.candidates, options.instruments, options.fit, inner);
     };
     const auto diagnose_all = [&] { return diagnose_records(records_of(traces)); };
+    std::vector<Corrected> doubted = doubt_corrections(options, traces);
     Diagnosed diagnosed = diagnose_all();
+    if (!doubted.empty()) {  // creep must describe them better than corrected plateaus do
+      const auto exchange = [&] {
+        for (auto& [k, other] : doubted) std::swap(traces[k].trace, other);
+      };
+      exchange();
+      Diagnosed corrected = diagnose_all();
+      const double with_creep = held_out_of_creep(diagnosed);
+      const bool creeps = std::isfinite(with_creep) &&
+                          (corrected.fits.empty() || with_creep < corrected.fits.back().error.held_out_rmse);
+      if (creeps) {
+        exchange();
+      } else {
+        diagnosed = std::move(corrected);
+      }
+    }
     const bool finished = diagnosed.diagnosis.verdict != Verdict::unfinished;
     if (finished && undo_needless_corrections(options, diagnosed, traces)) diagnosed = diagnose_all();
     withhold_of_differing_runs(traces, diagnose_records, diagnosed);

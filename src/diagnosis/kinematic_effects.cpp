@@ -216,6 +216,15 @@ bool plateau_is_off(const Motion& motion, const Instruments& instruments) {
          motion.plateau_ratio < limits::kLargestRatio;
 }
 
+bool plateaus_disagree(const Motion& a, const Motion& b) {
+  const auto alike = [&](Condition Conditions::*which) {
+    const Condition &x = a.conditions.*which, &y = b.conditions.*which;
+    return x.known() && y.known() && x.value == y.value;
+  };
+  return alike(&Conditions::radius) && alike(&Conditions::speed) &&
+         is_gap(a.plateau_ratio - b.plateau_ratio, std::hypot(a.plateau_ratio_std_error, b.plateau_ratio_std_error));
+}
+
 void add_motion(std::span<const Record> records, const Estimate& load_coupling, const Instruments& instruments,
                 const std::optional<Fit>& uncorrected, Diagnosis& diagnosis) {
   const FoundValue coupling = {load_coupling.value, load_coupling.std_error};

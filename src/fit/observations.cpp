@@ -255,8 +255,11 @@ std::vector<std::size_t> blocks_of(const Observations& observations, std::size_t
 
 Observations join(std::vector<Observations> records) {
   const RecordScales scales = scales_of(records);
+  std::vector<RecordScales> of_records;
+  for (const Observations& record : records) of_records.push_back(record.scales);
   Observations out = std::move(records.at(0));
   out.scales = scales;
+  if (of_records.size() > 1) out.scales_of_records = std::move(of_records);
   double values = static_cast<double>(out.size());
   for (std::size_t r = 1; r < records.size(); ++r) {
     Observations& next = records[r];

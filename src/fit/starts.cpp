@@ -112,8 +112,16 @@ Parameter on_scale_of(Parameter parameter, const Observations& observations) {
   // A coefficient is of the order of one, a force is of the order of what was recorded.
   const double force = parameter.scales_with_friction ? observations.friction_scale : 1.0;
   const double factor = force * growth_of(parameter.bound_scaling, observations.scales);
-  for (double* value : {&parameter.lower, &parameter.upper, &parameter.start, &parameter.neutral}) *value *= factor;
-  return parameter;
+  Parameter out = parameter;
+  for (double* value : {&out.lower, &out.upper, &out.start, &out.neutral}) *value *= factor;
+  for (const RecordScales& scales : observations.scales_of_records) {
+    const double own = force * growth_of(parameter.bound_scaling, scales);
+    out.lower = std::min(out.lower, own * parameter.lower);
+    out.upper = std::max(out.upper, own * parameter.upper);
+  }
+  if (parameter.neutral == parameter.lower) out.neutral = out.lower;
+  if (parameter.neutral == parameter.upper) out.neutral = out.upper;
+  return out;
 }
 
 Bounds bounds_of(const FrictionModel& model, const Observations& observations) {

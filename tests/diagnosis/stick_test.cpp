@@ -209,6 +209,41 @@ TEST(StickEvidence, AWrongRadiusIsNoCreep) {
   EXPECT_EQ(finding_of(result, "bristle").status, EffectStatus::not_supported);
 }
 
+/// A wrong radius would move the plateaus of both runs alike: that of half the load, whose sticks are short, is further
+/// from omega r.
+TEST(StickEvidence, PlateausThatDisagreeAreCreep) {
+  std::vector<TraceInput> inputs;
+  for (const double load : {50.0, 25.0}) {
+    Drive drive;
+    drive.radius = 0.015;
+    drive.mean_load = load;
+    drive.speed = constant_speed(kDiscSpeed);
+    const Rig rig = rig_with_damping_ratio(0.946, 14978, 0.02);
+    SimulationOptions options;
+    options.duration = 7;
+    options.rate = 10e3;
+    options.settle = 3;
+    options.scatter = {0.004, 0};
+    options.seed = 31;
+    Sensors sensors;
+    sensors.friction_noise = 0.008;
+    sensors.velocity_noise = 5e-5;
+    sensors.seed = 32;
+    const FrictionModel model(ExponentialLaw{}, {make_effect("bristle")});
+    const std::vector<double> p = {0.49, 0.388, 47.1, 1e5, 1};
+    SimulatedRecording hidden = simulate_recording(model, p, rig, drive, options, sensors);
+    inputs.emplace_back().trace = std::make_shared<const Trace>(std::move(hidden.recording.trace));
+  }
+  const DiagnosedTraces result = diagnose(inputs, IdentifyOptions());
+  const EffectFinding bristle = finding_of(result, "bristle");
+  ASSERT_EQ(bristle.status, EffectStatus::found) << bristle.reason;
+  EXPECT_NEAR(bristle.parameters[0].value, 1e5, 0.1 * 1e5);  // 7 % low: in short sticks the block rings on
+  for (const Identification& trace : result.traces) {
+    EXPECT_LT(trace.motion.plateau_ratio, 1);
+    EXPECT_EQ(trace.motion.plateau_correction, PlateauCorrection::none);
+  }
+}
+
 TEST(StickEvidence, RigidMemoriesAreNoBristle) {
   for (const auto& [key, p] : {std::pair<std::string, std::vector<double>>("rate-state", {50e-6, 0}),
                                std::pair<std::string, std::vector<double>>("frictional-lag", {1e-3})}) {

@@ -4,12 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <memory>
 #include <set>
 
 #include "diagnosis/ruling.hpp"
 #include "fit/fit_laws.hpp"
 #include "fit/model_residuals.hpp"
+#include "study/limits.hpp"
 #include "study/open_question.hpp"
 #include "study/plausible_draws.hpp"
 #include "study/simulated_run.hpp"
@@ -187,6 +189,42 @@ TEST(Plan, AnEffectThatIsPossibleIsAsLikelyAsItsPValueAllows) {
   ASSERT_EQ(question.reason, "");
   // Table 1 of Sellke, Bayarri and Berger (2001): a Bayes factor of 0.213 at the least; odds of 4 before.
   EXPECT_NEAR(question.models[1].probability / question.models[0].probability, 0.213 / 4, 2e-4);
+}
+
+/// What the run would show must be told from what looks like it: a delay beside a lag, and not a viscous term.
+TEST(Plan, WhatIsPossibleIsAskedAboutWithWhatLooksLikeIt) {
+  DiagnosedTraces diagnosed = diagnose({open_record("frictional-lag", 0.01, 6, 4000, 0.002)}, IdentifyOptions());
+  ASSERT_EQ(diagnosed.diagnosis.ladder.size(), 1U);
+  const Identification& trace = diagnosed.traces.front();
+  const Record record{&trace.motion, &trace.segmentation};
+  const std::map<std::string, double> p_values = {{"viscous", 0.04}, {"channel-delay", 0.03}, {"frictional-lag", 0.02}};
+  for (EffectFinding& finding : diagnosed.diagnosis.effects) {
+    if (finding.status == EffectStatus::possible) finding.status = EffectStatus::not_supported;
+    const auto p_value = p_values.find(finding.key);
+    if (p_value == p_values.end()) continue;
+    const FrictionModel model(diagnosed.diagnosis.law, {make_effect(finding.key)});
+    const Fit fit = fit_model(model, {&record, 1}, observations_for(model, {&record, 1}), {}, {});
+    finding.status = EffectStatus::possible;
+    finding.p_value = p_value->second;
+    finding.parameters.assign(fit.parameters.begin() + 3, fit.parameters.end());
+  }
+  const OpenQuestion question = open_question(diagnosed, {});
+  ASSERT_EQ(question.kind, QuestionKind::possible);
+  ASSERT_EQ(question.reason, "");
+  ASSERT_EQ(question.models.size(), 3U);
+  EXPECT_EQ(question.models[0].name, "frictional-lag");
+  EXPECT_EQ(question.models[1].name, "channel-delay");
+  EXPECT_TRUE(question.without(2));
+  // Bayes factors of 0.213 and 0.286 at the least (Sellke, Bayarri and Berger 2001), and odds of 4 for any of the two.
+  const double lag = question.models[0].probability, delay = question.models[1].probability;
+  EXPECT_NEAR(delay / lag, 0.213 / 0.286, 2e-3);
+  EXPECT_NEAR(question.models[2].probability / (lag + delay), 0.213 / 4, 2e-4);
+}
+
+TEST(Plan, NoRunIsSureToNameOrNotToName) {
+  EXPECT_NEAR(calibrated_chance(0), kGuesses, 1e-12);
+  EXPECT_NEAR(calibrated_chance(1), 1 - kLapses, 1e-12);
+  EXPECT_NEAR(calibrated_chance(0.5), 0.5, 0.03);  // between them chances come true as they are expected
 }
 
 /// Normal variables that correlate by a half are all positive with a chance of 1 in one more than there are.

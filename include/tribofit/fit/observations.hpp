@@ -130,6 +130,7 @@ struct Observations {
   double friction_scale = 1;    ///< what is 1 for a coefficient: of forces twice the median |friction| [N]
   double flicker = 0;           ///< power of 1/f noise in the first record, in squared parts of friction
   RecordScales scales;
+  std::vector<RecordScales> scales_of_records = {};  ///< of each by itself, where there are several
 
   std::size_t size() const { return time.size(); }
   /// A slip as friction/ takes it.

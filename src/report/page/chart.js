@@ -179,7 +179,9 @@ function layoutOf(chart) {
   const whole = chart.panels.reduce((sum, panel) => sum + panel.part, 0), free = 1 - gap * (count - 1);
   const layout = { font: { family: 'system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif', size: 13,
     color: styles.text },
-    margin: { l: 62, r: 14, t: 10, b: 46 }, paper_bgcolor: styles.paper, plot_bgcolor: styles.paper, hovermode: "closest",
+    // The library draws a chart twice whose labels need more; only narrow screens have no room for what most need.
+    margin: { l: innerWidth < 500 ? 62 : 88, r: 14, t: 20, b: 56 },
+    paper_bgcolor: styles.paper, plot_bgcolor: styles.paper, hovermode: "closest",
     showlegend: false, hoverlabel: { bgcolor: styles.paper, bordercolor: styles.axis, font: { color: styles.text } },
     height: chart.height, barmode: "group", uirevision: chart.id, shapes: shapesOf(chart), annotations: annotationsOf(chart),
     xaxis: axisOf(chart.x, { anchor: nth("y", count - 1) }) };
@@ -196,7 +198,7 @@ function layoutOf(chart) {
 /** Title and names below a chart, as its width has room for them: names that do not fit stand upright. */
 function fitBelow(layout, chart, width) {
   const longest = (axis) => letterWidth * Math.max(0, ...(axis.names || []).map((name) => plain(name).length));
-  const room = width - 76 - Math.max(...chart.panels.map((panel) => longest(panel.axis)));
+  const room = width - layout.margin.l - layout.margin.r - Math.max(...chart.panels.map((panel) => longest(panel.axis)));
   layout.xaxis.title.text = marked(brokenTitle(titleOf(chart.x), room));
   if (chart.x.names && longest(chart.x) + 12 > room / layout.xaxis.ticktext.length) layout.xaxis.tickangle = -90;
 }
