@@ -98,6 +98,12 @@ double growth_of(BoundScaling scaling, const RecordScales& here) {
   return 1;
 }
 
+/// Scales that are those of the longest of several records, and no medians over all slips.
+bool goes_with_extent(BoundScaling scaling) {
+  return scaling == BoundScaling::with_duration || scaling == BoundScaling::against_duration ||
+         scaling == BoundScaling::with_distance;
+}
+
 }  // namespace
 
 Parameter on_scale_of(Parameter parameter, const Observations& observations) {
@@ -115,6 +121,7 @@ Parameter on_scale_of(Parameter parameter, const Observations& observations) {
   Parameter out = parameter;
   for (double* value : {&out.lower, &out.upper, &out.start, &out.neutral}) *value *= factor;
   for (const RecordScales& scales : observations.scales_of_records) {
+    if (!goes_with_extent(parameter.bound_scaling)) break;
     const double own = force * growth_of(parameter.bound_scaling, scales);
     out.lower = std::min(out.lower, own * parameter.lower);
     out.upper = std::max(out.upper, own * parameter.upper);

@@ -10,8 +10,8 @@
 namespace tribofit {
 
 /// A parameter with bounds, start and neutral value on the scale of the record: levels of friction and what scales
-/// with them where friction is a force, and what its BoundScaling says. Of several records its range holds that of each
-/// by itself: a time constant that one of them shows is no less possible beside a much longer one.
+/// with them where friction is a force, and what its BoundScaling says. Of several records a range that goes with
+/// their extent holds that of each: a time constant that one of them shows is no less possible beside a longer one.
 Parameter on_scale_of(Parameter parameter, const Observations& observations);
 
 /// Bounds of every parameter in SI. Levels of friction, and what scales with them, grow with the data where friction is
