@@ -165,8 +165,9 @@ inline constexpr double kHopeless = 0.2;
 /// has a variance of four times its mean, which grows with the run; each is made as long as is worth it. For the best
 /// few the mean is that of several draws. Such a chance is calibrated by what came of the runs of simulated
 /// investigations: a few name the effect, or do not, whatever was expected (guesses and lapses of F. A. Wichmann,
-/// N. J. Hill, Percept. Psychophys. 63 (2001) 1293, doi:10.3758/bf03194544). Records of the best are diagnosed in full: what is named counts beside the calibrated chance as a beta prior, and the chances of the others are lowered
-/// by as much as full diagnoses named less than was expected, until the best of all has been diagnosed in full.
+/// N. J. Hill, Percept. Psychophys. 63 (2001) 1293, doi:10.3758/bf03194544). Records of the best are diagnosed in full:
+/// what is named counts beside the calibrated chance as a beta prior, and the chances of the others are lowered by as
+/// much as full diagnoses named less than was expected, until the best of all has been diagnosed in full.
 /// Experiments are ranked by probability less a cost for each minute.
 ///
 /// Only stick-slip on a rig that can be identified is simulated; `reason` says why where it cannot be.
