@@ -219,7 +219,8 @@ bool plateau_is_off(const Motion& motion, const Instruments& instruments) {
 bool plateaus_disagree(const Motion& a, const Motion& b) {
   const auto alike = [&](Condition Conditions::*which) {
     const Condition &x = a.conditions.*which, &y = b.conditions.*which;
-    return x.known() && y.known() && x.value == y.value;
+    constexpr double kAlike = 1e-3;  // a quarter of the least gap
+    return x.known() && y.known() && std::abs(x.value - y.value) <= kAlike * std::abs(x.value);
   };
   return alike(&Conditions::radius) && alike(&Conditions::speed) &&
          is_gap(a.plateau_ratio - b.plateau_ratio, std::hypot(a.plateau_ratio_std_error, b.plateau_ratio_std_error));
