@@ -14,6 +14,7 @@
 #include "instrument_limits.hpp"
 #include "limits.hpp"
 #include "tribofit/friction/effect_pairs.hpp"
+#include "tribofit/segmentation/load_coupling.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit::diagnosis {
@@ -219,11 +220,20 @@ bool plateau_is_off(const Motion& motion, const Instruments& instruments) {
 bool plateaus_disagree(const Motion& a, const Motion& b) {
   const auto alike = [&](Condition Conditions::*which) {
     const Condition &x = a.conditions.*which, &y = b.conditions.*which;
-    constexpr double kAlike = 1e-3;  // a quarter of the least gap
-    return x.known() && y.known() && std::abs(x.value - y.value) <= kAlike * std::abs(x.value);
+    return x.known() && y.known() && std::abs(x.value - y.value) <= limits::kSameSetting * std::abs(x.value);
   };
   return alike(&Conditions::radius) && alike(&Conditions::speed) &&
          is_gap(a.plateau_ratio - b.plateau_ratio, std::hypot(a.plateau_ratio_std_error, b.plateau_ratio_std_error));
+}
+
+void remove_load_coupling(Identification& trace) {
+  if (!trace.analysed) return;
+  const Estimate kappa = load_coupling(trace.motion, trace.segmentation);
+  if (!(std::abs(kappa.value) > limits::kLeastCoupling)) return;
+  const double chance = limits::kChance / static_cast<double>(effect_catalogue().size());
+  if (kappa.std_error > 0 && t_p_value(kappa.value / kappa.std_error, kappa.degrees_of_freedom) > chance) return;
+  uncouple_load(kappa.value, trace.motion);
+  trace.load_coupling = kappa;
 }
 
 void add_motion(std::span<const Record> records, const Estimate& load_coupling, const Instruments& instruments,

@@ -5,6 +5,7 @@
 
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/fit/fit.hpp"
+#include "tribofit/fit/identification.hpp"
 #include "tribofit/ingest/instruments.hpp"
 #include "tribofit/kinematics/motion.hpp"
 
@@ -18,6 +19,9 @@ bool plateau_is_off(const Motion& motion, const Instruments& instruments);
 
 /// Two runs at the same stated radius and speed have plateaus that no common radius or gain explains.
 bool plateaus_disagree(const Motion& a, const Motion& b);
+
+/// A load that follows friction within every cycle would pass for friction that follows the load.
+void remove_load_coupling(Identification& trace);
 
 /// Puts what was found in the motion and in the load channel of the first record, and undone, into a diagnosis: rungs
 /// below all others, a finding each, and the test that tells radius and gain apart; for effects of the motion that were

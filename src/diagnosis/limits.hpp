@@ -53,7 +53,9 @@ inline constexpr std::size_t kFewestSticks = 6;  ///< for a spread over cycles
 // Instruments and the plateau.
 inline constexpr double kDeclaredSigmas = 3;  ///< standard uncertainties that are still possible
 inline constexpr double kLeastGap = 0.004;    ///< of omega r: a pad is seldom set more closely, 0.06 mm at 15 mm
-inline constexpr double kGapSigmas = 5;       ///< standard errors: plateaus of one record are not independent
+inline constexpr double kSameSetting =
+    1e-3;                                ///< part by which radii or speeds differ that are one: a quarter of that gap
+inline constexpr double kGapSigmas = 5;  ///< standard errors: plateaus of one record are not independent
 inline constexpr double kLargestRatio = 2.5;  ///< or its inverse: a diameter for a radius is two; beyond, another fault
 inline constexpr double kFallOfSag = 15;      ///< of chi-squared, by which a spin explains a sag: by chance once in 1e4
 /// Part of the cycles from which on a filter that they show is one of all runs. Less: one short run that shows one

@@ -8,8 +8,6 @@
 #include <vector>
 
 #include "limits.hpp"
-#include "tribofit/segmentation/load_coupling.hpp"
-#include "tribofit/statistics/distributions.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::diagnosis {
@@ -105,16 +103,6 @@ void offer_load_variation(std::span<const Record> records, Diagnosis& diagnosis)
   }
   diagnosis.next_experiment =
       "Record the normal load: friction swings in proportion at all speeds. " + diagnosis.next_experiment;
-}
-
-void remove_load_coupling(Identification& trace) {
-  if (!trace.analysed) return;
-  const Estimate kappa = load_coupling(trace.motion, trace.segmentation);
-  if (!(std::abs(kappa.value) > limits::kLeastCoupling)) return;
-  const double chance = limits::kChance / static_cast<double>(effect_catalogue().size());
-  if (kappa.std_error > 0 && t_p_value(kappa.value / kappa.std_error, kappa.degrees_of_freedom) > chance) return;
-  uncouple_load(kappa.value, trace.motion);
-  trace.load_coupling = kappa;
 }
 
 }  // namespace tribofit::diagnosis

@@ -3,7 +3,6 @@
 #include <span>
 
 #include "tribofit/diagnosis/diagnosis.hpp"
-#include "tribofit/fit/identification.hpp"
 
 namespace tribofit::diagnosis {
 
@@ -15,8 +14,5 @@ double common_swing(std::span<const Record> records);
 /// and falls from cycle to cycle in proportion at break-away and in fast slip, the effect of the load channel is
 /// possible. A step of friction that was found may be one of the load.
 void offer_load_variation(std::span<const Record> records, Diagnosis& diagnosis);
-
-/// A load that follows friction within every cycle would pass for friction that follows the load.
-void remove_load_coupling(Identification& trace);
 
 }  // namespace tribofit::diagnosis

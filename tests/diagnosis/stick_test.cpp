@@ -97,32 +97,38 @@ TEST(StickEvidence, IsSilentWhereNoiseIsNotKnown) {
   EXPECT_EQ(stick_weights(few)[0].rows(), 0);
 }
 
-/// The diagnosis of a record of the published 15 mm rig.
-DiagnosedTraces diagnose_hidden(const std::string& key, const std::vector<double>& effect, double colour,
-                                double velocity_noise = 2e-5, double duration = 10,
-                                const Rig& rig = rig_with_damping_ratio(0.85, 16.2e3, 0.02)) {
+/// A record at 15 mm and the published speed.
+TraceInput hidden_run(const FrictionModel& model, const std::vector<double>& p, const Rig& rig, double load,
+                      double duration, Sensors sensors) {
   Drive drive;
   drive.radius = 0.015;
-  drive.mean_load = 50;
+  drive.mean_load = load;
   drive.speed = constant_speed(kDiscSpeed);
-  std::vector<double> p = {0.509, 0.318, 52.14};
-  p.insert(p.end(), effect.begin(), effect.end());
   SimulationOptions options;
   options.duration = duration;
   options.rate = 10e3;
   options.settle = 3;
   options.scatter = {0.004, 0};
   options.seed = 11;
+  sensors.seed = 12;
+  SimulatedRecording hidden = simulate_recording(model, p, rig, drive, options, sensors);
+  TraceInput input;
+  input.trace = std::make_shared<const Trace>(std::move(hidden.recording.trace));
+  return input;
+}
+
+/// The diagnosis of a record of the published 15 mm rig.
+DiagnosedTraces diagnose_hidden(const std::string& key, const std::vector<double>& effect, double colour,
+                                double velocity_noise = 2e-5, double duration = 10,
+                                const Rig& rig = rig_with_damping_ratio(0.85, 16.2e3, 0.02)) {
+  std::vector<double> p = {0.509, 0.318, 52.14};
+  p.insert(p.end(), effect.begin(), effect.end());
   Sensors sensors;
   sensors.friction_noise = 0.003;
   sensors.velocity_noise = velocity_noise;
   sensors.noise_colour = colour;
-  sensors.seed = 12;
   const FrictionModel model(ExponentialLaw{}, {make_effect(key)});
-  SimulatedRecording hidden = simulate_recording(model, p, rig, drive, options, sensors);
-  TraceInput input;
-  input.trace = std::make_shared<const Trace>(std::move(hidden.recording.trace));
-  return diagnose({input}, IdentifyOptions());
+  return diagnose({hidden_run(model, p, rig, 50, duration, sensors)}, IdentifyOptions());
 }
 
 EffectFinding finding_of(const DiagnosedTraces& result, const std::string& key) {
@@ -212,28 +218,14 @@ TEST(StickEvidence, AWrongRadiusIsNoCreep) {
 /// A wrong radius would move the plateaus of both runs alike: that of half the load, whose sticks are short, is further
 /// from omega r.
 TEST(StickEvidence, PlateausThatDisagreeAreCreep) {
+  const FrictionModel model(ExponentialLaw{}, {make_effect("bristle")});
+  const Rig rig = rig_with_damping_ratio(0.946, 14978, 0.02);
+  Sensors sensors;
+  sensors.friction_noise = 0.008;
+  sensors.velocity_noise = 5e-5;
   std::vector<TraceInput> inputs;
-  for (const double load : {50.0, 25.0}) {
-    Drive drive;
-    drive.radius = 0.015;
-    drive.mean_load = load;
-    drive.speed = constant_speed(kDiscSpeed);
-    const Rig rig = rig_with_damping_ratio(0.946, 14978, 0.02);
-    SimulationOptions options;
-    options.duration = 7;
-    options.rate = 10e3;
-    options.settle = 3;
-    options.scatter = {0.004, 0};
-    options.seed = 31;
-    Sensors sensors;
-    sensors.friction_noise = 0.008;
-    sensors.velocity_noise = 5e-5;
-    sensors.seed = 32;
-    const FrictionModel model(ExponentialLaw{}, {make_effect("bristle")});
-    const std::vector<double> p = {0.49, 0.388, 47.1, 1e5, 1};
-    SimulatedRecording hidden = simulate_recording(model, p, rig, drive, options, sensors);
-    inputs.emplace_back().trace = std::make_shared<const Trace>(std::move(hidden.recording.trace));
-  }
+  for (const double load : {50.0, 25.0})
+    inputs.push_back(hidden_run(model, {0.49, 0.388, 47.1, 1e5, 1}, rig, load, 7, sensors));
   const DiagnosedTraces result = diagnose(inputs, IdentifyOptions());
   const EffectFinding bristle = finding_of(result, "bristle");
   ASSERT_EQ(bristle.status, EffectStatus::found) << bristle.reason;

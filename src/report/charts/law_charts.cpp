@@ -72,8 +72,8 @@ LawBands bands_of(const DrawnTrace& d) {
     return bands_over_speed(d.trace.motion, d.pieces, values, kSpeedBins);
   };
   run_tasks(1 + 2 * models, d.threads, [&](std::size_t k) {
-    const std::size_t m = (k - 1) / 2;
-    if (k == 0) {
+    const std::size_t m = k / 2;
+    if (m == models) {
       out.measured = over_speed(d.trace.motion.friction);
     } else if (k % 2 == 0) {
       out.residuals[m] = over_speed(residuals_of(d, m));
