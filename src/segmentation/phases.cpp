@@ -68,7 +68,8 @@ std::vector<RawSlip> hysteresis(const Motion& motion, const Thresholds& t) {
   return slips;
 }
 
-// Ringing after a re-stick and spikes are lower and much shorter than the slips.
+// Ringing after a re-stick and spikes are lower and much shorter than the slips. What a record begins with may be the
+// end of a slip or ringing, which nothing tells apart; what it ends with has its break-away.
 void drop_chatter(std::vector<RawSlip>& slips, double peak) {
   std::vector<double> durations;
   for (const RawSlip& slip : slips) {
@@ -77,8 +78,7 @@ void drop_chatter(std::vector<RawSlip>& slips, double peak) {
   const double usual = durations.empty() ? 0 : median(std::move(durations));
   std::erase_if(slips, [&](const RawSlip& slip) {
     const auto duration = static_cast<double>(slip.samples.size());
-    const bool whole = slip.begins_within && slip.ends_within;
-    return (whole && slip.peak < kChatterPeak * peak && duration < kChatterTime * usual) ||
+    return (slip.ends_within && slip.peak < kChatterPeak * peak && duration < kChatterTime * usual) ||
            (duration < kSpikeSamples && duration < kSpikeTime * usual);
   });
 }

@@ -159,19 +159,42 @@ TEST(Cycles, SlowAndFastDiscs) {
   }
 }
 
-TEST(Cycles, RingingAfterRestickIsChatterNotCycles) {
+/// A run whose contact rings after each re-stick, with 10 % of the speed of a slip.
+truth::Run ringing_run() {
   truth::Rig rig;
-  const truth::Run run = truth::simulate(rig);
-  Trace trace = run.trace;
+  truth::Run run = truth::simulate(rig);
   std::size_t next = 0;
   const double disc = rig.speed() * rig.radius;
-  for (std::size_t i = 0; i < trace.size(); ++i) {
-    while (next < run.restick_time.size() && run.restick_time[next] < trace.time[i]) ++next;
-    if (next == 0 || std::abs(trace.velocity[i] - disc) > 1.5e-4) continue;
-    const double t = trace.time[i] - run.restick_time[next - 1];
-    trace.velocity[i] += 0.008 * std::exp(-t / 0.01) * std::sin(2 * std::numbers::pi * 120 * t);  // 10 % of the slip
+  for (std::size_t i = 0; i < run.trace.size(); ++i) {
+    while (next < run.restick_time.size() && run.restick_time[next] < run.trace.time[i]) ++next;
+    if (next == 0 || std::abs(run.trace.velocity[i] - disc) > 1.5e-4) continue;
+    const double t = run.trace.time[i] - run.restick_time[next - 1];
+    run.trace.velocity[i] += 0.008 * std::exp(-t / 0.01) * std::sin(2 * std::numbers::pi * 120 * t);
   }
-  EXPECT_EQ(find_cycles(compute_motion(std::move(trace))).cycles.size(), run.break_away_time.size());
+  return run;
+}
+
+TEST(Cycles, RingingAfterRestickIsChatterNotCycles) {
+  const truth::Run run = ringing_run();
+  EXPECT_EQ(find_cycles(compute_motion(run.trace)).cycles.size(), run.break_away_time.size());
+}
+
+TEST(Cycles, RingingThatARecordBeginsWithIsChatterToo) {
+  const truth::Run run = ringing_run();
+  const double quarter = 0.25 / 120;  // from the re-stick to the first peak of the ringing, and on to the next
+  for (const double beyond : {quarter, 3 * quarter}) {
+    const double begin = run.restick_time.front() + beyond;
+    const auto cut = std::lower_bound(run.trace.time.begin(), run.trace.time.end(), begin) - run.trace.time.begin();
+    Trace trace = run.trace;
+    for (auto* channel : {&trace.time, &trace.velocity, &trace.friction})
+      channel->erase(channel->begin(), channel->begin() + cut);
+    trace.steps = {{0, trace.size(), "", {}}};
+    const Segmentation s = find_cycles(compute_motion(std::move(trace)));
+    const auto later = std::count_if(run.break_away_time.begin(), run.break_away_time.end(),
+                                     [&](double time) { return time > begin; });
+    EXPECT_EQ(s.cycles.size(), static_cast<std::size_t>(later)) << beyond;
+    for (const Cycle& cycle : s.cycles) EXPECT_EQ(cycle.direction, 1);
+  }
 }
 
 TEST(Cycles, ReversingDisc) {
