@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
 
 #include "tribofit/friction/slip.hpp"
 
@@ -11,7 +12,7 @@ namespace tribofit {
 class Rotation {
  public:
   Rotation() = default;
-  explicit Rotation(double angle) : cosine_(std::cos(angle)), sine_(std::sin(angle)) {}
+  explicit Rotation(double angle) : Rotation(std::cos(angle), std::sin(angle)) {}
 
   double cosine() const { return cosine_; }
   double sine() const { return sine_; }
@@ -20,47 +21,100 @@ class Rotation {
   static constexpr double kSmall = 0.3;
 
   void turn(double by) {
+    constexpr double kTiny = 0.02;  // up to here fewer terms do
     const double x = by * by;
-    double c =
-        1 - x * (1.0 / 2 -
-                 x * (1.0 / 24 - x * (1.0 / 720 - x * (1.0 / 40320 - x * (1.0 / 3628800 - x * (1.0 / 479001600))))));
-    double s =
-        by * (1 - x * (1.0 / 6 - x * (1.0 / 120 - x * (1.0 / 5040 - x * (1.0 / 362880 - x * (1.0 / 39916800))))));
-    if (!(std::abs(by) < kSmall)) c = std::cos(by), s = std::sin(by);
-    const double before = cosine_;
-    cosine_ = before * c - sine_ * s;
-    sine_ = before * s + sine_ * c;
+    double c = 0, s = 0;
+    if (std::abs(by) < kTiny) {
+      c = 1 - x * (1.0 / 2 - x * (1.0 / 24 - x * (1.0 / 720)));
+      s = by * (1 - x * (1.0 / 6 - x * (1.0 / 120 - x * (1.0 / 5040))));
+    } else if (std::abs(by) < kSmall) {
+      c = 1 - x * (1.0 / 2 -
+                   x * (1.0 / 24 - x * (1.0 / 720 - x * (1.0 / 40320 - x * (1.0 / 3628800 - x * (1.0 / 479001600))))));
+      s = by * (1 - x * (1.0 / 6 - x * (1.0 / 120 - x * (1.0 / 5040 - x * (1.0 / 362880 - x * (1.0 / 39916800))))));
+    } else {
+      c = std::cos(by), s = std::sin(by);
+    }
+    *this = *this * Rotation(c, s);
+  }
+
+  /// By the sum of both angles.
+  friend Rotation operator*(const Rotation& a, const Rotation& b) {
+    return {a.cosine_ * b.cosine_ - a.sine_ * b.sine_, a.cosine_ * b.sine_ + a.sine_ * b.cosine_};
   }
 
  private:
+  Rotation(double cosine, double sine) : cosine_(cosine), sine_(sine) {}
+
   double cosine_ = 1, sine_ = 0;
 };
 
-/// cos(w t + phase) at one time after the other, with derivatives in w and phase. w [rad/s]; t [s].
+/// amplitude cos(angle + phase) at one angle after the other, with derivatives in amplitude and phase.
+template <class T>
+class Wave {
+ public:
+  Wave(const T& amplitude, const T& phase) {
+    using std::cos;
+    using std::sin;
+    along_ = amplitude * cos(phase);
+    across_ = -(amplitude * sin(phase));
+  }
+
+  T at(double cosine, double sine) const { return along_ * cosine + across_ * sine; }
+  T at(const Rotation& angle) const { return at(angle.cosine(), angle.sine()); }
+  /// Its slope over the angle.
+  double slope(double cosine, double sine) const { return scalar_part(across_) * cosine - scalar_part(along_) * sine; }
+
+ private:
+  T along_, across_;
+};
+
+/// amplitude exp(-decay t) cos(w t + phase) at one time after the other, with derivatives in all four. decay [1/s];
+/// w [rad/s]; t [s].
 template <class T>
 class WaveOverTime {
  public:
-  WaveOverTime(const T& w, const T& phase) : w_(w), phase_(phase) {}
+  WaveOverTime(const T& amplitude, const T& decay, const T& w, const T& phase)
+      : wave_(amplitude, phase), decay_(scalar_part(decay)), w_(scalar_part(w)) {
+    decay_change_ = decay - decay_;
+    w_change_ = w - w_;
+  }
 
   T at(double time) {
-    const T angle = w_ * time + phase_;
-    const double by = scalar_part(w_) * (time - time_);
-    // Now and then by the functions: roundings of a long record do not add up.
-    constexpr int kTurns = 128;
-    if (turns_ % kTurns == 0 || !(std::abs(by) < Rotation::kSmall)) {
-      rotation_ = Rotation(scalar_part(angle));
+    go_to(time);
+    const double cosine = size_ * turned_.cosine(), sine = size_ * turned_.sine();
+    const T reading = wave_.at(cosine, sine);
+    if constexpr (std::is_same_v<T, double>) {
+      return reading;
     } else {
-      rotation_.turn(by);
+      return reading + (time * wave_.slope(cosine, sine) * w_change_ - time * scalar_part(reading) * decay_change_);
     }
-    ++turns_;
-    time_ = time;
-    return T(rotation_.cosine() - rotation_.sine() * (angle - scalar_part(angle)));
   }
 
  private:
-  T w_, phase_;
-  Rotation rotation_;
-  double time_ = 0;
+  void go_to(double time) {
+    constexpr double kShort = 0.05;  // decays up to here need no function
+    constexpr int kTurns = 128;      // now and then by the functions: roundings of a long record do not add up
+    const double by = w_ * (time - time_), x = -decay_ * (time - time_);
+    if (turns_ % kTurns == 0 || !(std::abs(by) < Rotation::kSmall) || !(std::abs(x) < kShort)) {
+      turned_ = Rotation(w_ * time);
+      size_ = decay_ == 0 ? 1 : std::exp(-decay_ * time);
+    } else {
+      turned_.turn(by);
+      if (x != 0)
+        size_ *=
+            1 + x * (1 + x * (1.0 / 2 +
+                              x * (1.0 / 6 +
+                                   x * (1.0 / 24 + x * (1.0 / 120 + x * (1.0 / 720 + x * (1.0 / 5040 + x / 40320)))))));
+    }
+    ++turns_;
+    time_ = time;
+  }
+
+  Wave<T> wave_;
+  double decay_, w_;
+  T decay_change_, w_change_;  ///< 0, with the derivatives
+  Rotation turned_;
+  double size_ = 1, time_ = 0;
   int turns_ = 0;
 };
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "tribofit/friction/effect.hpp"
-#include "tribofit/friction/wave_along_slip.hpp"
+#include "tribofit/friction/turn_along_slip.hpp"
 
 namespace tribofit {
 
@@ -59,8 +59,12 @@ struct DiscPattern {
   }
   template <class T>
   void modulate_all(const T* p, const Slip& slip, std::span<const T> /*velocity*/, std::span<T> mu) const {
-    WaveAlongSlip<T> two(2, slip, p[1]), three(3, slip, p[3]);
-    for (std::size_t i = 0; i < mu.size(); ++i) mu[i] = mu[i] * (1.0 + p[0] * two.at(i) + p[2] * three.at(i));
+    const Wave<T> two(p[0], p[1]), three(p[2], p[3]);
+    TurnAlongSlip turn(slip);
+    for (std::size_t i = 0; i < mu.size(); ++i) {
+      const Rotation once = turn.at(i), twice = once * once;
+      mu[i] = mu[i] * (1.0 + (two.at(twice) + three.at(twice * once)));
+    }
   }
 };
 

@@ -55,8 +55,8 @@ struct Interference {
 
   template <class T>
   void add_to_readings(const T* p, const Slip& slip, std::span<T> mu) const {
-    WaveOverTime<T> wave(2 * std::numbers::pi * p[1], p[2]);
-    for (std::size_t i = 0; i < mu.size(); ++i) mu[i] = mu[i] + p[0] * wave.at(slip.time[i]);
+    WaveOverTime<T> wave(p[0], T(0.0), 2 * std::numbers::pi * p[1], p[2]);
+    for (std::size_t i = 0; i < mu.size(); ++i) mu[i] = mu[i] + wave.at(slip.time[i]);
   }
 
   /// The level comes from a straight line through the second half of the stick, over which a line of high frequency

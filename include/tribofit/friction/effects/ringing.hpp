@@ -64,14 +64,12 @@ struct Ringing {
   }
   template <class T>
   void add_to_readings(const T* p, const Slip& slip, std::span<T> mu) const {
-    using std::exp;
     if (!slip.from_stick) return;
     const T w = 2 * std::numbers::pi * p[1];
-    const T amplitude = slip.direction * p[0], decay = -p[2] * w;
-    WaveOverTime<T> wave(w, p[3]);
+    WaveOverTime<T> wave(slip.direction * p[0], p[2] * w, w, p[3]);
     for (std::size_t i = 0; i < mu.size(); ++i) {
       const double since = slip.time[i] - slip.break_away_time;
-      if (since >= 0) mu[i] = mu[i] + amplitude * exp(decay * since) * wave.at(since);
+      if (since >= 0) mu[i] = mu[i] + wave.at(since);
     }
   }
 };

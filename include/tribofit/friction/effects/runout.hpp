@@ -1,7 +1,7 @@
 #pragma once
 
 #include "tribofit/friction/effects/drift.hpp"
-#include "tribofit/friction/wave_along_slip.hpp"
+#include "tribofit/friction/turn_along_slip.hpp"
 
 namespace tribofit {
 
@@ -44,8 +44,9 @@ struct Runout {
   }
   template <class T>
   void modulate_all(const T* p, const Slip& slip, std::span<const T> /*velocity*/, std::span<T> mu) const {
-    WaveAlongSlip<T> wave(1, slip, p[1]);
-    for (std::size_t i = 0; i < mu.size(); ++i) mu[i] = mu[i] * (1.0 + p[0] * wave.at(i));
+    const Wave<T> wave(p[0], p[1]);
+    TurnAlongSlip turn(slip);
+    for (std::size_t i = 0; i < mu.size(); ++i) mu[i] = mu[i] * (1.0 + wave.at(turn.at(i)));
   }
 };
 
