@@ -8,7 +8,6 @@
 #include <span>
 
 #include "break_away.hpp"
-#include "ingest/limits.hpp"
 #include "limits.hpp"
 #include "measures.hpp"
 #include "phases.hpp"
@@ -47,6 +46,11 @@ Cycle blank_cycle(const RawSlip& slip) {
   return c;
 }
 
+/// Whether the record begins with what may be the end of a slip, or ringing after it.
+bool begins_in_doubt(const std::vector<RawSlip>& slips) {
+  return slips.size() > 1 && slips.front().may_be_ringing;
+}
+
 /// The cycles of a record as they are found: slips in order, each with the stick before it, then the break-aways.
 class PhaseFinder {
  public:
@@ -60,6 +64,10 @@ class PhaseFinder {
     for (std::size_t k = 0; k < slips_.size(); ++k) begin_stick(k, k > 0 ? after[k - 1] : 0);
     if (!cycles_.empty()) end_in_stick(cycles_.back(), slips_.back().ends_within && can_stick());
     set_break_aways();
+    if (begins_in_doubt(slips_)) {  // neither slip nor stick: it has only shown where the first stick begins
+      cycles_.erase(cycles_.begin());
+      cycles_.front().stick_complete = false;
+    }
     return std::move(cycles_);
   }
 
@@ -160,25 +168,10 @@ bool mostly_slides(const Motion& motion, const std::vector<Cycle>& cycles, const
          static_cast<double>(driven) > segmentation::kDrivenPart * static_cast<double>(sliding);
 }
 
-/// First samples after a gap in the clock, and both ends of what a fault of the recording spoilt.
-std::vector<std::size_t> gaps_of(const Motion& motion) {
-  std::vector<std::size_t> gaps;
-  for (const Step& step : motion.steps) {
-    const std::size_t b = step.begin;
-    if (b > 0 && b < motion.size() && motion.time[b] - motion.time[b - 1] > kGapInterval * motion.step)
-      gaps.push_back(b);
-  }
-  for (const SampleRange& stretch : segmentation::spoilt_stretches(motion)) {
-    gaps.push_back(stretch.begin);
-    gaps.push_back(stretch.end);
-  }
-  return gaps;
-}
-
 /// No phase runs across a gap: nobody knows what happened there. A stick begins anew behind it, a slip ends before it,
 /// and a break-away that was found with samples from both sides is none.
 void cut_at_gaps(const Motion& motion, std::vector<Cycle>& cycles) {
-  for (const std::size_t gap : gaps_of(motion)) {
+  for (const std::size_t gap : segmentation::gaps_of(motion)) {
     for (Cycle& c : cycles) {
       const bool in_stick = c.stick.begin < gap && gap <= c.slip.begin,
                  in_slip = c.slip.begin < gap && gap < c.slip.end;
@@ -237,7 +230,7 @@ void measure_cycle(const Motion& motion, const std::vector<std::size_t>& gaps, s
 }
 
 void measure(const Motion& motion, int threads, std::vector<Cycle>& cycles) {
-  const std::vector<std::size_t> gaps = gaps_of(motion);
+  const std::vector<std::size_t> gaps = segmentation::gaps_of(motion);
   run_tasks(cycles.size(), threads, [&](std::size_t k) { measure_cycle(motion, gaps, k, cycles); });
 }
 
@@ -386,6 +379,8 @@ Segmentation find_cycles(const Motion& motion, int threads) {
       sticks && motion.stick.below == 0 && !motion.stick.always && mostly_slides(motion, result.cycles, t);
   if (rests_only) result.kind = MotionKind::always_slipping;
   if (result.kind == MotionKind::always_slipping) slide_throughout(motion, t.peak, result);
+  if (result.kind == MotionKind::stick_slip && begins_in_doubt(slips))
+    result.notes.push_back("the record begins with the end of a slip, or ringing after it, which is left out");
   measure(motion, threads, result.cycles);
   result.left_out = segmentation::spoilt_stretches(motion);
   summarise(threads, result);

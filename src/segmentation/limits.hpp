@@ -25,8 +25,9 @@ inline constexpr double kHasSlip = 0.2;
 inline constexpr double kSlipAtMost = 0.15, kStickOverError = 5, kStickAtMost = 0.075, kStickOverPeak = 0.03;
 /// Rounding of omega r - v_b, over the fastest of both: no motion.
 inline constexpr double kRoundingOfVelocity = 1e-12;
-/// Of the typical peak, from which a slip shows how long slips last; below which one is ringing after a re-stick where
-/// it lasts less than the next of that time. Samples of a spike, where it lasts less than the last of it.
+/// Of the typical peak, from which a slip shows how long slips last; below which one that lasts less than the next
+/// of that time is ringing after a re-stick, or may be where it begins the record. Samples of a spike, where it lasts
+/// less than the last of that time.
 inline constexpr double kShowsDuration = 0.4, kChatterPeak = 0.2, kChatterTime = 0.35;
 inline constexpr double kSpikeSamples = 3, kSpikeTime = 0.1;
 /// Samples between two slips in opposite directions that show whether v_r stays or passes: a third at either end.

@@ -68,19 +68,28 @@ std::vector<RawSlip> hysteresis(const Motion& motion, const Thresholds& t) {
   return slips;
 }
 
-// Ringing after a re-stick and spikes are lower and much shorter than the slips. What a record begins with may be the
-// end of a slip or ringing, which nothing tells apart; what it ends with has its break-away.
+// Ringing after a re-stick and spikes are lower and much shorter than the slips. Of what the ends of the record cut,
+// v_r does not show how high and long it was: what begins the record may be ringing or the end of a slip; what ends it
+// is ringing where it follows a slip as closely as ringing does.
 void drop_chatter(std::vector<RawSlip>& slips, double peak) {
   std::vector<double> durations;
   for (const RawSlip& slip : slips) {
     if (slip.peak > kShowsDuration * peak) durations.push_back(static_cast<double>(slip.samples.size()));
   }
   const double usual = durations.empty() ? 0 : median(std::move(durations));
-  std::erase_if(slips, [&](const RawSlip& slip) {
+  std::vector<RawSlip> kept;
+  std::size_t end = 0;  // of the one before it, or of the ringing after that
+  for (RawSlip& slip : slips) {
     const auto duration = static_cast<double>(slip.samples.size());
-    return (slip.ends_within && slip.peak < kChatterPeak * peak && duration < kChatterTime * usual) ||
-           (duration < kSpikeSamples && duration < kSpikeTime * usual);
-  });
+    const auto since = static_cast<double>(slip.samples.begin - end);
+    const bool is_low = slip.peak < kChatterPeak * peak && duration < kChatterTime * usual;
+    const bool follows = end > 0 && since < kChatterTime * usual;
+    const bool is_spike = duration < kSpikeSamples && duration < kSpikeTime * usual;
+    slip.may_be_ringing = is_low && !slip.begins_within;
+    end = slip.samples.end;
+    if (!is_spike && !(is_low && slip.begins_within && (slip.ends_within || follows))) kept.push_back(slip);
+  }
+  slips = std::move(kept);
 }
 
 }  // namespace

@@ -25,9 +25,11 @@ struct RawSlip {
   int direction = 1;    ///< sign of v_r
   double peak = 0;      ///< largest |v_r - plateau| [m/s]
   bool begins_within = false, ends_within = false;  ///< neither end is cut off by the record
+  bool may_be_ringing = false;  ///< it begins the record, and is as low and short as ringing after a re-stick
 };
 
-/// Slips by hysteresis, without the chatter that follows a re-stick (much lower and shorter than the slips).
+/// Slips by hysteresis, without the chatter that follows a re-stick (much lower and shorter than the slips). Where the
+/// record begins with such a piece it may be the end of a slip too: may_be_ringing.
 std::vector<RawSlip> find_slips(const Motion& motion, const Thresholds& thresholds);
 
 /// Of a record that never sticks: below them the direction of sliding is not known.

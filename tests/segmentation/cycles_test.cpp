@@ -159,8 +159,8 @@ TEST(Cycles, SlowAndFastDiscs) {
   }
 }
 
-/// A run whose contact rings after each re-stick, with 10 % of the speed of a slip.
-truth::Run ringing_run() {
+/// A run whose contact rings after each re-stick, with this part of the speed of a slip.
+truth::Run ringing_run(double part) {
   truth::Rig rig;
   truth::Run run = truth::simulate(rig);
   std::size_t next = 0;
@@ -169,32 +169,64 @@ truth::Run ringing_run() {
     while (next < run.restick_time.size() && run.restick_time[next] < run.trace.time[i]) ++next;
     if (next == 0 || std::abs(run.trace.velocity[i] - disc) > 1.5e-4) continue;
     const double t = run.trace.time[i] - run.restick_time[next - 1];
-    run.trace.velocity[i] += 0.008 * std::exp(-t / 0.01) * std::sin(2 * std::numbers::pi * 120 * t);
+    run.trace.velocity[i] += part * 0.08 * std::exp(-t / 0.01) * std::sin(2 * std::numbers::pi * 120 * t);
   }
   return run;
 }
 
+/// The samples of a trace from one time to another [s].
+Trace part_of(const Trace& whole, double from, double to) {
+  const auto sample = [&](double time) {
+    return std::lower_bound(whole.time.begin(), whole.time.end(), time) - whole.time.begin();
+  };
+  Trace trace = whole;
+  for (auto* channel : {&trace.time, &trace.velocity, &trace.friction})
+    *channel = std::vector<double>(channel->begin() + sample(from), channel->begin() + sample(to));
+  trace.steps = {{0, trace.size(), "", {}}};
+  return trace;
+}
+
 TEST(Cycles, RingingAfterRestickIsChatterNotCycles) {
-  const truth::Run run = ringing_run();
+  const truth::Run run = ringing_run(0.1);
   EXPECT_EQ(find_cycles(compute_motion(run.trace)).cycles.size(), run.break_away_time.size());
 }
 
-TEST(Cycles, RingingThatARecordBeginsWithIsChatterToo) {
-  const truth::Run run = ringing_run();
-  const double quarter = 0.25 / 120;  // from the re-stick to the first peak of the ringing, and on to the next
+/// Both lobes of the ringing, that against the slips and that along with them, rise above the threshold of a slip.
+TEST(Cycles, RingingThatARecordBeginsOrEndsWithIsChatterToo) {
+  const truth::Run run = ringing_run(0.15);
+  const double quarter = 0.25 / 120;  // from the re-stick to the first peak of the ringing
+  const std::size_t sticks = run.restick_time.size();
   for (const double beyond : {quarter, 3 * quarter}) {
-    const double begin = run.restick_time.front() + beyond;
-    const auto cut = std::lower_bound(run.trace.time.begin(), run.trace.time.end(), begin) - run.trace.time.begin();
-    Trace trace = run.trace;
-    for (auto* channel : {&trace.time, &trace.velocity, &trace.friction})
-      channel->erase(channel->begin(), channel->begin() + cut);
-    trace.steps = {{0, trace.size(), "", {}}};
-    const Segmentation s = find_cycles(compute_motion(std::move(trace)));
-    const auto later = std::count_if(run.break_away_time.begin(), run.break_away_time.end(),
-                                     [&](double time) { return time > begin; });
-    EXPECT_EQ(s.cycles.size(), static_cast<std::size_t>(later)) << beyond;
+    const double begin = run.restick_time.front() + beyond, end = run.restick_time[sticks - 2] + beyond;
+    const Motion motion = compute_motion(part_of(run.trace, begin, end));
+    const Segmentation s = find_cycles(motion);
+    ASSERT_GT(std::abs(motion.relative_velocity.front()), s.slip_threshold);
+    ASSERT_GT(std::abs(motion.relative_velocity.back()), s.slip_threshold);
+    EXPECT_EQ(s.cycles.size(), sticks - 2) << beyond;
     for (const Cycle& cycle : s.cycles) EXPECT_EQ(cycle.direction, 1);
+    EXPECT_GT(s.cycles.front().stick.begin, 0U);  // what is left out is no stick either
+    EXPECT_FALSE(s.cycles.front().stick_complete || !s.cycles.back().slip_complete);
   }
+}
+
+TEST(Cycles, ARecordThatBeginsInSlipHasItUnlessItIsAlmostOver) {
+  const truth::Run run = truth::simulate(truth::Rig{});
+  const double restick = run.restick_time.front(), slip = restick - run.break_away_time.front();
+  const auto begin_below = [&](double part) {  // of the peak of v_r, on the falling flank of the first slip
+    Trace trace = part_of(run.trace, restick - 0.3 * slip, run.trace.time.back());
+    const Motion motion = compute_motion(trace);
+    std::size_t first = 0;
+    while (motion.relative_velocity[first] > part * 0.084) ++first;
+    return part_of(trace, trace.time[first], trace.time.back());
+  };
+  const Segmentation with = find_cycles(compute_motion(begin_below(0.4)));
+  EXPECT_EQ(with.cycles.front().stick.size(), 0U);
+  EXPECT_TRUE(with.cycles[1].stick_complete);
+  const Motion motion = compute_motion(begin_below(0.1));
+  const Segmentation without = find_cycles(motion);
+  EXPECT_EQ(without.cycles.size() + 1, with.cycles.size());
+  EXPECT_FALSE(without.cycles.front().stick_complete);
+  EXPECT_NEAR(motion.time[without.cycles.front().stick.begin], restick, 2e-4);  // no moving sample in the stick
 }
 
 TEST(Cycles, ReversingDisc) {

@@ -8,29 +8,21 @@
 
 namespace tribofit {
 
-/// Where the disc stands at the samples of a slip, in order: its angle theta [rad], 0 where it is not known. Its waves,
-/// n to a revolution, are those of the n-th power of what it has turned.
+/// Where the disc stands at the samples of a slip: rotated by its angle theta, 0 where that is not known. A wave with n
+/// periods a revolution takes the n-th power of the rotation.
 class TurnAlongSlip {
  public:
-  explicit TurnAlongSlip(const Slip& slip) : angle_(slip.angle) {
-    if (angle_.empty()) return;
-    theta_ = angle_[0];
-    turned_ = Rotation(theta_);
-  }
+  explicit TurnAlongSlip(const Slip& slip) : angle_(slip.angle) {}
 
-  /// At a sample that is none before the one asked for last.
+  /// Little work for samples in order.
   const Rotation& at(std::size_t sample) {
-    if (!angle_.empty()) {
-      turned_.turn(angle_[sample] - theta_);
-      theta_ = angle_[sample];
-    }
-    return turned_;
+    if (!angle_.empty()) theta_.go_to(angle_[sample]);
+    return theta_.rotation();
   }
 
  private:
   std::span<const double> angle_;
-  double theta_ = 0;  ///< where it has turned to
-  Rotation turned_;
+  FollowedAngle theta_;
 };
 
 }  // namespace tribofit

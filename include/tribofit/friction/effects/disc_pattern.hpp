@@ -4,6 +4,7 @@
 
 #include "tribofit/friction/effect.hpp"
 #include "tribofit/friction/turn_along_slip.hpp"
+#include "tribofit/friction/wave.hpp"
 
 namespace tribofit {
 

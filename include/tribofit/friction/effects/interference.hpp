@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "tribofit/friction/effect.hpp"
-#include "tribofit/friction/rotation.hpp"
+#include "tribofit/friction/wave.hpp"
 
 namespace tribofit {
 
@@ -55,7 +55,7 @@ struct Interference {
 
   template <class T>
   void add_to_readings(const T* p, const Slip& slip, std::span<T> mu) const {
-    WaveOverTime<T> wave(p[0], T(0.0), 2 * std::numbers::pi * p[1], p[2]);
+    WaveOverTime<T> wave(p[0], 2 * std::numbers::pi * p[1], p[2]);
     for (std::size_t i = 0; i < mu.size(); ++i) mu[i] = mu[i] + wave.at(slip.time[i]);
   }
 

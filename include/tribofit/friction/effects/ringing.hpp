@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "tribofit/friction/effect.hpp"
-#include "tribofit/friction/rotation.hpp"
+#include "tribofit/friction/wave.hpp"
 
 namespace tribofit {
 

@@ -2,6 +2,7 @@
 
 #include "tribofit/friction/effects/drift.hpp"
 #include "tribofit/friction/turn_along_slip.hpp"
+#include "tribofit/friction/wave.hpp"
 
 namespace tribofit {
 
