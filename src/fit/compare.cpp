@@ -3,6 +3,7 @@
 #include <limits>
 #include <numbers>
 
+#include "dual.hpp"
 #include "errors.hpp"
 #include "tribofit/fit/fit.hpp"
 #include "tribofit/friction/evaluate.hpp"
@@ -100,9 +101,10 @@ Curve law_curve(const Fit& fit, std::span<const double> velocity, int threads) {
   // Two samples of a slip at constant speed that begins in steady state; a law of the disc angle stands for its mean
   // over a turn.
   const int turns = angles_of_turn(fit.model);
-  const auto steady = [&](const FrictionModel& model, const std::vector<double>& q, double v) {
+  const auto steady = [&]<class T>(const FrictionModel& model, const std::vector<T>& q, double v) {
     const double time[] = {-1, 0}, speed[] = {v, v};
-    double mu[2], sum = 0;
+    const T sliding[] = {T(v), T(v)};
+    T mu[2], sum = T(0.0);
     for (int k = 0; k < turns; ++k) {
       const double theta = 2 * std::numbers::pi * k / turns, angle[] = {theta, theta};
       Slip slip;
@@ -112,23 +114,26 @@ Curve law_curve(const Fit& fit, std::span<const double> velocity, int threads) {
       slip.time = time;
       slip.velocity = speed;
       slip.angle = angle;
-      evaluate<double>(model, q.data(), slip, slip.velocity, mu);
+      evaluate<T>(model, q.data(), slip, sliding, mu);
       sum += mu[1];
     }
-    return sum / turns;
+    return T(sum / static_cast<double>(turns));
   };
   const double t = t_quantile_95(fit.degrees_of_freedom);
-  constexpr std::size_t kOfTask = 16;  // speeds
+  constexpr std::size_t kOfTask = 16, kDirections = 8;  // speeds; derivatives of one evaluation
   run_tasks((velocity.size() + kOfTask - 1) / kOfTask, threads, [&](std::size_t task) {
     const FrictionModel model(fit.model);  // its formulas must not be shared between threads
     std::vector<double> slope(n);
     for (std::size_t at = task * kOfTask; at < std::min(velocity.size(), (task + 1) * kOfTask); ++at) {
-      const double v = velocity[at], mu = steady(model, p, v);
-      for (std::size_t k = 0; k < n; ++k) {
-        std::vector<double> q = p;
-        const double h = 1e-6 * std::max(std::abs(p[k]), 1e-6);
-        q[k] += h;
-        slope[k] = (steady(model, q, v) - mu) / h;
+      const double v = velocity[at];
+      double mu = 0;
+      for (std::size_t first = 0; first < n; first += kDirections) {
+        const std::size_t last = std::min(n, first + kDirections);
+        std::vector<Dual<kDirections>> q(p.begin(), p.end());
+        for (std::size_t k = first; k < last; ++k) q[k] = Dual<kDirections>(p[k], k - first);
+        const Dual<kDirections> found = steady(model, q, v);
+        mu = found.a;
+        for (std::size_t k = first; k < last; ++k) slope[k] = found.v[k - first];
       }
       double variance = 0;
       for (std::size_t i = 0; i < n; ++i) {

@@ -23,7 +23,7 @@ struct NormalEquations {
   std::vector<bool> unconstrained() const;
 };
 
-/// Evaluates the residuals and their derivatives once. Cost: one pass over the slips per four parameters.
+/// Evaluates the residuals and their derivatives once. Cost: one pass over the slips per eight parameters.
 NormalEquations normal_equations(const ModelResiduals& residuals, const Observations& observations,
                                  const std::vector<double>& p);
 

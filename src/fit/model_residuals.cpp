@@ -135,11 +135,16 @@ bool ModelResiduals::fill(std::size_t k, const double* p, std::size_t derivative
     std::copy(rows.begin(), rows.end(), block.col(0).begin());
   }
   for (std::size_t first = 0; first < derivatives;) {
-    const std::size_t left = derivatives - first, width = left <= 4 || left == 7 || left == 8 ? 4 : 6;
-    const bool finite = width == 4 ? differentiate(range, p, level, first, derivatives, workspace.four, block)
-                                   : differentiate(range, p, level, first, derivatives, workspace.six, block);
+    // As few passes as eight derivatives each allow, and none wider than it has to be.
+    const std::size_t left = derivatives - first, passes = (left + 7) / 8, even = (left + passes - 1) / passes;
+    const auto in_directions = [&](auto& arrays) {
+      return differentiate(range, p, level, first, derivatives, arrays, block);
+    };
+    const bool finite = even <= 4   ? in_directions(workspace.four)
+                        : even <= 6 ? in_directions(workspace.six)
+                                    : in_directions(workspace.eight);
     if (!finite) return false;
-    first += width;
+    first += even <= 4 ? 4 : even <= 6 ? 6 : 8;
   }
   block.col(residual + 1).setZero();  // the scatter of stick is in its own noise
   if (whitens) {

@@ -160,6 +160,7 @@ class ModelResiduals final : public Residuals {
     Arrays<double> values;
     Arrays<Dual<4>> four;
     Arrays<Dual<6>> six;
+    Arrays<Dual<8>> eight;
   };
   /// Adds the residuals of stick to `rows`.
   template <class T>
