@@ -137,14 +137,12 @@ bool ModelResiduals::fill(std::size_t k, const double* p, std::size_t derivative
   for (std::size_t first = 0; first < derivatives;) {
     // As few passes as eight derivatives each allow, and none wider than it has to be.
     const std::size_t left = derivatives - first, passes = (left + 7) / 8, even = (left + passes - 1) / passes;
-    const auto in_directions = [&](auto& arrays) {
-      return differentiate(range, p, level, first, derivatives, arrays, block);
-    };
-    const bool finite = even <= 4   ? in_directions(workspace.four)
-                        : even <= 6 ? in_directions(workspace.six)
-                                    : in_directions(workspace.eight);
+    const std::size_t width = even <= 4 ? 4 : even <= 6 ? 6 : 8;
+    const bool finite = width == 4   ? differentiate(range, p, level, first, derivatives, workspace.four, block)
+                        : width == 6 ? differentiate(range, p, level, first, derivatives, workspace.six, block)
+                                     : differentiate(range, p, level, first, derivatives, workspace.eight, block);
     if (!finite) return false;
-    first += even <= 4 ? 4 : even <= 6 ? 6 : 8;
+    first += width;
   }
   block.col(residual + 1).setZero();  // the scatter of stick is in its own noise
   if (whitens) {
