@@ -205,12 +205,14 @@ bool is_beaten(const DiagnosisContext& context, const Ladder& ladder, const std:
   });
 }
 
-/// The ladder that predicts best of those that are still worth a rung; none left: nullptr.
+/// The shortest ladder of those that are still worth a rung, the one that predicts best of those as long; none left:
+/// nullptr.
 Ladder* next_to_climb(const DiagnosisContext& context, std::vector<Ladder>& ladders, bool all_matter) {
   Ladder* next = nullptr;
   for (Ladder& ladder : ladders) {
     if (ladder.finished || (!all_matter && is_beaten(context, ladder, ladders))) continue;
-    if (next == nullptr || ladder.top().held_out_squares < next->top().held_out_squares) next = &ladder;
+    const auto order = [](const Ladder& l) { return std::pair(l.steps.size(), l.top().held_out_squares); };
+    if (next == nullptr || order(ladder) < order(*next)) next = &ladder;
   }
   return next;
 }
