@@ -7,6 +7,7 @@
 #include "fit/errors.hpp"
 #include "limits.hpp"
 #include "statistics/reductions.hpp"
+#include "tribofit/oscillator/simulate_recording.hpp"
 
 namespace tribofit {
 
@@ -26,8 +27,7 @@ bool creeps(const FrictionModel& model) {
 
 /// The motion as it is known of a simulation: nothing is to be found out about its channels, which takes half the time
 /// of a judgement. Where the block creeps in stick, its plateau is found as in a record.
-Motion motion_of(Trace trace, const SimulatedMotion& moved, const Sensors& sensors, const FrictionModel& model,
-                 const StickRule& stick) {
+Motion motion_of(Trace trace, bool sticks, const Sensors& sensors, const FrictionModel& model, const StickRule& stick) {
   if (model.acts_in_stick() || creeps(model)) {
     MotionOptions plain;
     plain.trim = false;
@@ -55,7 +55,7 @@ Motion motion_of(Trace trace, const SimulatedMotion& moved, const Sensors& senso
   out.steps = std::move(trace.steps);
   out.velocity_noise = sensors.velocity_noise;
   out.stick = stick;
-  out.sticks = std::any_of(moved.sticks.begin(), moved.sticks.end(), [](std::uint8_t s) { return s != 0; });
+  out.sticks = sticks;
   return out;
 }
 
@@ -122,8 +122,10 @@ SimulatedRun simulate_run(Machine machine, const RunConditions& run, const Recor
   sensors.noise_colour = std::pow(sensors.noise_colour, record.rate / run.rate);
   sensors = averaged_noise(sensors, run.rate / options.rate);
   sensors.seed = seed ^ 0x2545f4914f6cdd1du;
-  const SimulatedMotion moved = simulate(machine.rig, drive, machine.model, machine.parameters, options);
-  Trace trace = tribofit::record(moved, machine.model, machine.parameters, sensors).trace;
+  options.channels = recorded_channels(machine.model, machine.parameters, drive, sensors);
+  SimulatedMotion moved = simulate(machine.rig, drive, machine.model, machine.parameters, options);
+  const bool sticks = std::find(moved.sticks.begin(), moved.sticks.end(), 1) != moved.sticks.end();
+  Trace trace = recorded_trace(std::move(moved), machine.model, machine.parameters, sensors);
   trace.path = "simulated run";
   if (measured.load.empty()) trace.load.clear();
   if (force) trace.friction_kind = FrictionKind::force;
@@ -132,7 +134,7 @@ SimulatedRun simulate_run(Machine machine, const RunConditions& run, const Recor
   for (Step& step : trace.steps) step.conditions.load = trace.conditions.load;
 
   SimulatedRun out;
-  out.motion = motion_of(std::move(trace), moved, sensors, machine.model, measured.stick);
+  out.motion = motion_of(std::move(trace), sticks, sensors, machine.model, measured.stick);
   out.segmentation = find_cycles(out.motion);
   return out;
 }
