@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -33,10 +35,18 @@ inline Json interval_json(double lower, double upper) {
   return Json::array({number(lower), number(upper)});
 }
 
+/// Room for so many members more: an object that grows copies all that it holds, since its names are constant.
+inline void make_room(Json& json, std::size_t more) {
+  if (json.is_null()) json = Json::object();
+  auto& members = json.get_ref<Json::object_t&>();
+  members.reserve(members.size() + more);
+}
+
 inline void add_members(Json&) {}
 /// Adds names and values, one after the other; numbers that are not known become null.
 template <class Value, class... More>
 void add_members(Json& json, const char* name, Value&& value, More&&... more) {
+  make_room(json, 1 + sizeof...(more) / 2);
   if constexpr (std::is_same_v<std::decay_t<Value>, double>) {
     json[name] = number(value);
   } else {
@@ -56,7 +66,8 @@ Json object(Members&&... members) {
 /// A list of what `make` makes of each item.
 template <class Items, class Make>
 Json list_of(const Items& items, Make&& make) {
-  Json list = Json::array();
+  Json::array_t list;
+  list.reserve(std::size(items));
   for (const auto& item : items) list.push_back(make(item));
   return list;
 }
@@ -66,10 +77,12 @@ inline Json rounded(double value, int digits) {
   if (!std::isfinite(value)) return nullptr;
   if (value == 0) return 0.0;
   // Integers and powers of ten up to 10^22 are exact, and so their quotient is the double nearest to the decimal.
-  constexpr double kExact = 1e22;
-  const double shift = digits - 1 - std::floor(std::log10(std::abs(value)));
-  const double power = std::pow(10.0, std::abs(shift));
-  if (!(power <= kExact)) return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr);
+  static constexpr double kExact[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                      1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+  const int shift = digits - 1 - static_cast<int>(std::floor(std::log10(std::abs(value))));
+  const auto size = static_cast<std::size_t>(std::abs(shift));
+  if (size >= std::size(kExact)) return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr);
+  const double power = kExact[size];
   return shift < 0 ? std::round(value / power) * power : std::round(value * power) / power;
 }
 inline Json rounded_list(std::span<const double> values, int digits) {

@@ -14,6 +14,9 @@ namespace tribofit {
 
 namespace {
 
+/// Slips before and after a change that it may touch.
+constexpr std::ptrdiff_t kBeside = 2;
+
 /// What slips leave, whitened, when the change comes at one time or another. It touches the slips beside it alone:
 /// those further away are looked at once, before the change and after it.
 class ChangeInTime {
@@ -21,15 +24,12 @@ class ChangeInTime {
   ChangeInTime(const ChangePoint& point, const ModelResiduals& residuals, const Observations& observations,
                std::vector<double> p)
       : point_(point), residuals_(residuals), p_(std::move(p)), order_(observations.slips.size()) {
-    constexpr double kFar = 1e6;  // [s], far from any record
-    before_ = blocks_at(kFar);
-    after_ = blocks_at(-kFar);
-    if (before_.empty() || after_.empty()) return;
     const auto& slips = observations.slips;
     std::iota(order_.begin(), order_.end(), std::size_t(0));
     std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
       return observations.time[slips[a].begin] < observations.time[slips[b].begin];
     });
+    if (!look_before_and_after(observations)) return;
     const std::vector<double> before = residuals.squares_of(before_), after = residuals.squares_of(after_);
     std::vector<double> sorted_before, sorted_after;
     for (const std::size_t k : order_) {
@@ -46,7 +46,6 @@ class ChangeInTime {
 
   /// Squares of all slips; several threads may ask.
   double squares_at(double time) const {
-    constexpr std::ptrdiff_t kBeside = 2;  // slips before and after it
     const auto next = std::upper_bound(begin.begin(), begin.end(), time) - begin.begin();
     std::vector<Eigen::MatrixXd> blocks = after_;
     const ModelResiduals residuals = residuals_;  // formulas must not be shared between threads
@@ -72,8 +71,28 @@ class ChangeInTime {
     p[point_.time] = time;
     return p;
   }
-  std::vector<Eigen::MatrixXd> blocks_at(double time) const {
-    return residuals_.residual_blocks(with_change_at(time).data());
+
+  /// Sets what slips leave before the change and after it; false where the model is not finite. Where the change is now
+  /// they are all on one side of it, which may be known: only the other side is looked at.
+  bool look_before_and_after(const Observations& observations) {
+    constexpr double kFar = 1e6;  // [s], far from any record
+    before_ = residuals_.residual_blocks(p_.data());
+    if (before_.empty()) return false;
+    after_ = before_;
+    const auto begins_before = [&](std::size_t k, double time) {
+      return observations.time[observations.slips[k].begin] <= time;
+    };
+    const auto next = std::partition_point(order_.begin(), order_.end(),
+                                           [&](std::size_t k) { return begins_before(k, p_[point_.time]); });
+    const auto first = next - std::min(kBeside, next - order_.begin()),
+               last = next + std::min(kBeside, order_.end() - next);
+    return look_at({order_.begin(), last}, -kFar, after_) && look_at({first, order_.end()}, kFar, before_);
+  }
+  bool look_at(const std::vector<std::size_t>& slips, double time, std::vector<Eigen::MatrixXd>& out) const {
+    std::vector<Eigen::MatrixXd> blocks = residuals_.of_slips(slips).residual_blocks(with_change_at(time).data());
+    if (blocks.size() < slips.size()) return false;
+    for (std::size_t k = 0; k < slips.size(); ++k) out[slips[k]] = std::move(blocks[k]);
+    return true;
   }
 
   const ChangePoint& point_;

@@ -43,16 +43,32 @@ Eigen::VectorXd step_without(const FitContext& context, const Solution& solution
   return levels - inverse_where_known(curvature, equations.total, free) * (gradient + curvature * levels);
 }
 
-/// Sets the squares of the cycles that a fold holds out, at q.
+/// Each value is a sample and each sample that counts is among them: what is left of the values is left of the record.
+bool are_all_samples(const Observations& observations, const std::vector<double>& counts) {
+  double values = static_cast<double>(observations.size());
+  for (const auto& slip : observations.slips) {
+    if (slip.from_stick) values += slip.break_away_root_weight * slip.break_away_root_weight;
+  }
+  return observations.velocity_variance.empty() &&
+         std::abs(values - std::accumulate(counts.begin(), counts.end(), 0.0)) < 0.5;
+}
+
+/// Sets the squares of the cycles that a fold holds out, at q. every_sample: see are_all_samples().
 ///
 /// The squares on every sample at p are known; means over a few samples give their change exactly where the two curves
 /// differ by a nearly constant amount within such a mean. Where the change is as large as the squares themselves that
 /// is not so, and every sample is looked at.
 void set_squares_of_fold(const FitContext& context, const std::vector<std::size_t>& held, const std::vector<double>& p,
-                         const std::vector<double>& q, Fit& fit) {
+                         const std::vector<double>& q, bool every_sample, Fit& fit) {
   const Observations& observations = context.observations;
   const ModelResiduals residuals(context.model, observations, held);
-  const std::vector<double> at_q = residuals.squares(q.data()), at_p = residuals.squares(p.data());
+  const std::vector<double> at_q = residuals.squares(q.data());
+  if (every_sample && at_q.size() == held.size()) {
+    for (const std::size_t s : held) fit.cycle_squares[observations.slips[s].cycle] = 0;
+    for (std::size_t k = 0; k < held.size(); ++k) fit.cycle_squares[observations.slips[held[k]].cycle] += at_q[k];
+    return;
+  }
+  const std::vector<double> at_p = residuals.squares(p.data());
   double known = 0, change = 0;
   const std::size_t count = std::min(at_q.size(), at_p.size());
   for (std::size_t k = 0; k < count; ++k) change += std::abs(at_q[k] - at_p[k]);
@@ -117,6 +133,7 @@ void cross_validate(const FitContext& context, const Solution& solution, const N
   fit.cycle_squares = errors.squares;
   fit.fold_parameters.assign(folds, p);
   fit.cycle_folds = blocks_of(observations, folds);
+  const bool every_sample = are_all_samples(observations, errors.counts);
   run_tasks(folds, context.evaluation.threads, [&](std::size_t fold) {
     std::vector<std::size_t> held, kept;
     for (const std::size_t s : all_slips(observations)) {
@@ -127,7 +144,7 @@ void cross_validate(const FitContext& context, const Solution& solution, const N
     const bool is_long = take_step(context.bounds, free, step, q);
     if (is_long && !context.by_extremes())
       q = context.is_look() ? shortened_step(context, kept, p, free, step) : context.solve(kept, p, quick_search()).p;
-    set_squares_of_fold(context, held, p, q, fit);
+    set_squares_of_fold(context, held, p, q, every_sample, fit);
   });
   const double squares = std::accumulate(fit.cycle_squares.begin(), fit.cycle_squares.end(), 0.0);
   const double counts = std::accumulate(fit.cycle_counts.begin(), fit.cycle_counts.end(), 0.0);

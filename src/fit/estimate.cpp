@@ -153,7 +153,7 @@ void settle(FitContext& context, const std::vector<std::size_t>& slips, const st
   constexpr int kFewestPasses = 3, kMostPasses = 20;
   bool is_settled = false;
   for (int pass = 0; pass < kMostPasses && !is_settled; ++pass) {
-    context.whitening = plain.whitening_at(p.data());
+    context.whitening = plain.whitening_at(p.data(), change.has_value());
     if (change) find_change(context, *change, held, p);
     if (pass + 1 == kMostPasses) break;
     std::vector<double> next = context.solve(slips, p, search, held).p;

@@ -137,8 +137,9 @@ bool ModelResiduals::fill(std::size_t k, const double* p, std::size_t derivative
   for (std::size_t first = 0; first < derivatives;) {
     // As few passes as eight derivatives each allow, and none wider than it has to be.
     const std::size_t left = derivatives - first, passes = (left + 7) / 8, even = (left + passes - 1) / passes;
-    const std::size_t width = even <= 4 ? 4 : even <= 6 ? 6 : 8;
-    const bool finite = width == 4   ? differentiate(range, p, level, first, derivatives, workspace.four, block)
+    const std::size_t width = even <= 2 ? 2 : even <= 4 ? 4 : even <= 6 ? 6 : 8;
+    const bool finite = width == 2   ? differentiate(range, p, level, first, derivatives, workspace.two, block)
+                        : width == 4 ? differentiate(range, p, level, first, derivatives, workspace.four, block)
                         : width == 6 ? differentiate(range, p, level, first, derivatives, workspace.six, block)
                                      : differentiate(range, p, level, first, derivatives, workspace.eight, block);
     if (!finite) return false;
@@ -269,6 +270,7 @@ bool ModelResiduals::evaluate(const double* p, double* residual, double* jacobia
 }
 
 std::vector<Eigen::MatrixXd> ModelResiduals::residual_blocks(const double* p) const {
+  if (was_left_at(p)) return blocks_of_left();
   std::vector<Block> blocks;
   return compressed(p, false, blocks) ? blocks : std::vector<Block>();
 }

@@ -61,8 +61,10 @@ class ModelResiduals final : public Residuals {
     std::vector<double> level;   ///< delta_i of every slip as predicted: the least-squares one, shrunk by the scatter
     std::vector<double> weight;  ///< of every slip in the mean: s^2 g'g/(sigma^2 + s^2 g'g)
     std::vector<double> log_spread;  ///< log(1 + s^2 g'g/sigma^2) of every slip: what its likelihood pays for scatter
-    double slow = 0;                 ///< t^2/sigma^2; 0: no noise raises whole slips
-    double stick = 1;                ///< to which the squares of stick are weakened
+    std::vector<double> p;           ///< where it was made, when it was asked to keep what the model leaves there:
+    std::vector<Eigen::VectorXd> left;  ///< of every slip, its rows as those of g
+    double slow = 0;                    ///< t^2/sigma^2; 0: no noise raises whole slips
+    double stick = 1;                   ///< to which the squares of stick are weakened
 
     bool any() const { return part > 0 || slow > 0; }
   };
@@ -101,8 +103,17 @@ class ModelResiduals final : public Residuals {
   /// finite.
   std::vector<double> squares(const double* p) const;
 
+  /// These residuals, of other slips.
+  ModelResiduals of_slips(std::vector<std::size_t> slips) const {
+    ModelResiduals out = *this;
+    out.slips_ = std::move(slips);
+    out.last_ = {};
+    return out;
+  }
+
   /// Residuals of every slip at p, compressed, and those of one slip (a place in slips()): what changes in few slips
-  /// needs to be looked at in those alone. Empty where the model is not finite.
+  /// needs to be looked at in those alone. Empty where the model is not finite. Costs little where the whitening kept
+  /// what the model leaves.
   std::vector<Eigen::MatrixXd> residual_blocks(const double* p) const;
   Eigen::MatrixXd residual_block(std::size_t k, const double* p) const;
   /// Their sum of squares of every slip, whitened.
@@ -137,8 +148,9 @@ class ModelResiduals final : public Residuals {
     whitening_ = &whitening;
     own_levels_ = own_levels && options_.loss == Loss::squares;
   }
-  /// The whitening that the residuals at p call for; none where no slip begins with a break-away.
-  Whitening whitening_at(const double* p) const;
+  /// The whitening that the residuals at p call for; none where no slip begins with a break-away. keep_left: those
+  /// residuals are kept in it.
+  Whitening whitening_at(const double* p, bool keep_left = false) const;
 
  private:
   /// Columns J (when asked for), r, g of one slip; compressed to as many rows as columns at the most.
@@ -158,6 +170,7 @@ class ModelResiduals final : public Residuals {
   };
   struct Workspace {
     Arrays<double> values;
+    Arrays<Dual<2>> two;
     Arrays<Dual<4>> four;
     Arrays<Dual<6>> six;
     Arrays<Dual<8>> eight;
@@ -178,9 +191,11 @@ class ModelResiduals final : public Residuals {
   bool compressed(const double* p, bool with_jacobian, std::vector<Block>& blocks,
                   const FurtherColumns& further = {}) const;
   bool was_evaluated(const double* p) const;  ///< by white_blocks(), and last
+  bool was_left_at(const double* p) const;    ///< what the whitening kept is what the model leaves at p
   /// Blocks with the Jacobian, whitened; nullptr where the model is not finite. A search often asks once more for
   /// where another one ended.
   const std::vector<Block>* white_blocks(const double* p) const;
+  std::vector<Block> blocks_of_left() const;  ///< as residual_blocks() has them
   /// As compressed(), of the slips [begin, end).
   bool compress(std::size_t begin, std::size_t end, const double* p, bool with_jacobian, std::vector<Block>& blocks,
                 const FurtherColumns& further) const;

@@ -38,6 +38,14 @@ std::vector<std::size_t> movable(const Linearisation& here, const Bounds& bounds
   return out;
 }
 
+/// Of many slips a sixteenth, of both directions.
+std::vector<std::size_t> every_so_many(const std::vector<std::size_t>& slips) {
+  constexpr std::size_t kApart = 17;
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < slips.size(); k += kApart) out.push_back(slips[k]);
+  return out;
+}
+
 /// Takes one step, within the bounds; its length in standard errors, NaN where there is none. values: behind the rows.
 double take_gauss_newton_step(const Linearisation& here, const Bounds& bounds, double values, std::vector<double>& p) {
   const std::vector<std::size_t> free = movable(here, bounds, p);
@@ -82,7 +90,7 @@ bool refine(FitContext& context, const std::optional<ChangePoint>& change, Bound
   const std::vector<double> begin = p;
   double last = std::numeric_limits<double>::infinity();
   for (int step = 0; step < kMostRefiningSteps; ++step) {
-    context.whitening = plain.whitening_at(p.data());
+    context.whitening = plain.whitening_at(p.data(), change.has_value());
     if (change) find_change(context, *change, held, p);
     const std::optional<Linearisation> here = linearise(context.residuals(all), p);
     if (!here) break;
@@ -99,18 +107,24 @@ bool refine(FitContext& context, const std::optional<ChangePoint>& change, Bound
 ModelResiduals refine_look(FitContext& context, const std::optional<ChangePoint>& change, Bounds& held,
                            std::vector<double>& p) {
   const std::vector<std::size_t> all = all_slips(context.observations);
-  context.whitening =
-      ModelResiduals(context.model, context.observations, all, context.evaluation).whitening_at(p.data());
+  const ModelResiduals plain(context.model, context.observations, all, context.evaluation);
+  context.whitening = plain.whitening_at(p.data(), change.has_value());
   if (change) find_change(context, *change, held, p);
   ModelResiduals residuals = context.residuals(all);
   const std::optional<Linearisation> here = linearise(residuals, p);
   if (!here) return residuals;
-  const double before = residuals.squares_with_scatter(p.data());
   std::vector<double> next = p;
   const double length = take_gauss_newton_step(*here, held, static_cast<double>(context.observations.size()), next);
   if (!std::isfinite(length)) return residuals;
-  if (residuals.squares_with_scatter(next.data()) <= kRiseOfLook * before) p = std::move(next);
-  return residuals;  // it still holds the Jacobian at the old p, which a step that is not taken needs again
+  const auto leads_astray = [&](const ModelResiduals& to, const ModelResiduals& from) {
+    return !(to.squares_with_scatter(next.data()) <= kRiseOfLook * from.squares_with_scatter(p.data()));
+  };
+  ModelResiduals there = residuals;  // each holds its Jacobian, of which one is needed next
+  const ModelResiduals few = residuals.of_slips(every_so_many(all));
+  if (!leads_astray(few, few)) linearise(there, next);  // most likely it is that one
+  if (leads_astray(there, residuals)) return residuals;
+  p = std::move(next);
+  return there;
 }
 
 }  // namespace tribofit

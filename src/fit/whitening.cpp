@@ -6,6 +6,7 @@
 
 #include "limits.hpp"
 #include "model_residuals.hpp"
+#include "statistics/linear_algebra.hpp"
 
 namespace tribofit {
 
@@ -114,7 +115,7 @@ void whiten_break_away(const std::vector<Products>& slips, const Observations& o
 
 }  // namespace
 
-ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
+ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p, bool keep_left) const {
   Whitening out;
   out.g.resize(observations_.slips.size());
   out.level.assign(observations_.slips.size(), 0.0);
@@ -123,6 +124,7 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
       std::any_of(slips_.begin(), slips_.end(), [this](std::size_t s) { return observations_.slips[s].from_stick; });
   if (!breaks_away) return out;
   std::vector<Products> all(slips_.size());
+  std::vector<Eigen::VectorXd> left(keep_left ? observations_.slips.size() : 0);
   const bool finite = in_parts([&](const ModelResiduals& own, std::size_t begin, std::size_t end) {
     Workspace workspace;
     Block block;
@@ -136,16 +138,34 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
       all[k] = {
           slips_[k],      static_cast<double>(rows), g.squaredNorm(), g.dot(u), u.squaredNorm(), g.dot(r), u.dot(r),
           r.squaredNorm()};
+      if (keep_left) left[slips_[k]] = r;
     }
     return true;
   });
   if (!finite) return out;
+  if (keep_left) out.p.assign(p, p + parameter_count()), out.left = std::move(left);
   std::vector<Products> slips;
   std::copy_if(all.begin(), all.end(), std::back_inserter(slips), [](const Products& slip) { return slip.gg > 0; });
   out.slow = slow_noise_of_slips(slips, observations_);
   for (Products& slip : slips) slip = slip.whitened(out.slow);
   whiten_break_away(slips, observations_, out);
   return out;
+}
+
+bool ModelResiduals::was_left_at(const double* p) const {
+  return whitening_ != nullptr && !own_levels_ && weights_.empty() && !whitening_->p.empty() &&
+         std::equal(whitening_->p.begin(), whitening_->p.end(), p);
+}
+
+std::vector<ModelResiduals::Block> ModelResiduals::blocks_of_left() const {
+  std::vector<Block> blocks;
+  for (const std::size_t k : slips_) {
+    Block block(whitening_->left[k].size(), 2);
+    block << whitening_->left[k], whitening_->g[k];
+    if (whitening_->slow > 0) whiten_level(observations_.slips[k], block);
+    blocks.push_back(triangular_factor(block));
+  }
+  return blocks;
 }
 
 }  // namespace tribofit

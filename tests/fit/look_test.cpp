@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <vector>
 
+#include "fit/change_point.hpp"
 #include "fit/model_residuals.hpp"
 #include "synthetic.hpp"
 #include "tribofit/fit/fit.hpp"
@@ -90,6 +92,55 @@ TEST(NormalEquations, AreTheSameBehindAnEvaluationAndWithoutOne) {
   EXPECT_LT((curvature - j.transpose() * j).norm(), 1e-9 * curvature.norm());
   // Sums of M'M r in parts by slip and through the mean level are the whole gradient.
   EXPECT_LT((gradient - j.transpose() * r).norm(), 1e-6 * (j.transpose().cwiseAbs() * r.cwiseAbs()).norm());
+}
+
+/// Squares of slips that the whitening knows are those that are evaluated, and elsewhere nothing is known.
+TEST(SquaresOfSlips, AreTheSameWhereTheWhiteningKeptWhatIsLeft) {
+  const FrictionModel model(make_law("exponential"), {make_effect("frictional-lag")});
+  const synthetic::Record record = record_of(model, {2e-3}, 20);
+  const Observations observations = observe(record.motion, record.segmentation, model.needs());
+  std::vector<double> p = synthetic::table4_15mm(make_law("exponential"));
+  p.push_back(2.2e-3);
+  const ModelResiduals plain(model, observations, all_slips(observations));
+  ModelResiduals::Whitening kept = plain.whitening_at(p.data(), true), not_kept = plain.whitening_at(p.data());
+  ASSERT_GT(kept.part, 0);
+  for (const double slow : {0.0, 1e-3}) {
+    kept.slow = not_kept.slow = slow;
+    ModelResiduals knows(plain), evaluates(plain);
+    knows.whiten(kept), evaluates.whiten(not_kept);
+    for (const double times : {1.0, 1.1}) {
+      std::vector<double> at = p;
+      at[1] *= times;
+      const auto known = knows.squares_of(knows.residual_blocks(at.data()));
+      const auto truth = evaluates.squares_of(evaluates.residual_blocks(at.data()));
+      ASSERT_EQ(known.size(), observations.slips.size());
+      for (std::size_t k = 0; k < truth.size(); ++k) EXPECT_NEAR(known[k], truth[k], 1e-10 * truth[k]) << slow;
+    }
+  }
+}
+
+/// Wherever it begins, the search for a change ends where the change is.
+TEST(BestChange, IsFoundFromBothSidesOfIt) {
+  const FrictionModel model(make_law("exponential"), {make_effect("step")});
+  const synthetic::Record bare = record_of(FrictionModel(make_law("exponential")), {}, 30);
+  const double truth = 0.37 * bare.motion.time.back();
+  const synthetic::Record record = record_of(model, {0.03, truth}, 30);
+  const Observations observations = observe(record.motion, record.segmentation, model.needs());
+  const std::optional<ChangePoint> change = change_point_of(model);
+  ASSERT_TRUE(change);
+  const Bounds bounds = bounds_of(model, observations);
+  std::vector<double> p = synthetic::table4_15mm(make_law("exponential"));
+  p.insert(p.end(), {0.03, truth});
+  const double period = record.motion.time.back() / 30;
+  for (const bool keep_left : {false, true}) {
+    for (const double begin : {0.02, 0.2, 0.37, 0.6, 0.98}) {
+      p[change->time] = begin * record.motion.time.back();
+      ModelResiduals residuals(model, observations, all_slips(observations));
+      const ModelResiduals::Whitening whitening = residuals.whitening_at(p.data(), keep_left);
+      residuals.whiten(whitening);
+      EXPECT_NEAR(best_change(*change, residuals, observations, bounds, p, 1), truth, period) << begin << keep_left;
+    }
+  }
 }
 
 }  // namespace

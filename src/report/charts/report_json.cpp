@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
 #include "report/charts/styles.hpp"
 #include "report/json_parts.hpp"
@@ -58,15 +60,17 @@ Json styles_json() {
 
 /// Adds what differs from its default: no false, no zero, no empty text or list, no number that is not known.
 template <class Value, class... More>
-void add_given(Json& json, const char* name, const Value& value, const More&... more) {
-  if constexpr (std::is_floating_point_v<Value>) {
+void add_given(Json& json, const char* name, Value&& value, More&&... more) {
+  make_room(json, 1 + sizeof...(more) / 2);
+  using Plain = std::remove_cvref_t<Value>;
+  if constexpr (std::is_floating_point_v<Plain>) {
     if (std::isfinite(value)) json[name] = value;
-  } else if constexpr (std::is_integral_v<Value>) {
+  } else if constexpr (std::is_integral_v<Plain>) {
     if (value != 0) json[name] = value;
   } else {
-    if (!value.empty()) json[name] = value;
+    if (!value.empty()) json[name] = std::forward<Value>(value);  // long lists are not copied
   }
-  if constexpr (sizeof...(more) > 0) add_given(json, more...);
+  if constexpr (sizeof...(more) > 0) add_given(json, std::forward<More>(more)...);
 }
 
 Json axis_json(const ChartAxis& axis) {
@@ -81,6 +85,7 @@ Json line_json(const ChartLine& line, int digits_of_x) {
   Json json = object("name", line.name, "x", rounded_list(line.x, digits_of_x), "colour",
                      style_of(stroke.colour, kColours).name, "dash", style_of(stroke.dash, kDashes).name, "width",
                      stroke.width);
+  make_room(json, 11);  // what follows
   add_given(json, "y", rounded_list(line.y, kDigits), "low", rounded_list(line.low, kDigits), "high",
             rounded_list(line.high, kDigits), "bars", line.bars, "panel", line.panel);
   if (stroke.symbol != Symbol::none)
@@ -153,6 +158,7 @@ Json item_json(const Chart& chart) {
   const auto line = [&](const ChartLine& l) { return line_json(l, chart.x.digits); };
   Json json = object("type", "chart", "id", chart.id, "title", chart.title, "note", chart.note, "height", chart.height,
                      "x", axis_json(chart.x), "panels", list_of(chart.panels, panel));
+  make_room(json, 7);  // what follows
   add_given(json, "half", chart.half, "lines", list_of(chart.lines, line), "bars", list_of(chart.bars, bars));
   if (chart.map) json["map"] = map_json(*chart.map, chart.x);
   add_annotations(chart, json);
