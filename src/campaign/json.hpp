@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
@@ -35,11 +36,13 @@ inline Json interval_json(double lower, double upper) {
   return Json::array({number(lower), number(upper)});
 }
 
-/// Room for so many members more: an object that grows copies all that it holds, since its names are constant.
+/// Room for so many members more: an object that grows copies all that it holds, since its names are constant. What
+/// has long lists is given room for all its members at first.
 inline void make_room(Json& json, std::size_t more) {
   if (json.is_null()) json = Json::object();
   auto& members = json.get_ref<Json::object_t&>();
-  members.reserve(members.size() + more);
+  const std::size_t wanted = members.size() + more;
+  if (wanted > members.capacity()) members.reserve(std::max(wanted, 2 * members.capacity()));
 }
 
 inline void add_members(Json&) {}
@@ -55,12 +58,19 @@ void add_members(Json& json, const char* name, Value&& value, More&&... more) {
   add_members(json, std::forward<More>(more)...);
 }
 
+/// As object(), with room for so many members more.
+template <class... Members>
+Json object_with_room(std::size_t more, Members&&... members) {
+  Json json = Json::object();
+  make_room(json, sizeof...(members) / 2 + more);
+  add_members(json, std::forward<Members>(members)...);
+  return json;
+}
+
 /// An object of names and values: object("law", "exponential", "slope", 0.2).
 template <class... Members>
 Json object(Members&&... members) {
-  Json json = Json::object();
-  add_members(json, std::forward<Members>(members)...);
-  return json;
+  return object_with_room(0, std::forward<Members>(members)...);
 }
 
 /// A list of what `make` makes of each item.
@@ -77,12 +87,12 @@ inline Json rounded(double value, int digits) {
   if (!std::isfinite(value)) return nullptr;
   if (value == 0) return 0.0;
   // Integers and powers of ten up to 10^22 are exact, and so their quotient is the double nearest to the decimal.
-  static constexpr double kExact[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
-                                      1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+  static constexpr double kPowersOfTen[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                            1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
   const int shift = digits - 1 - static_cast<int>(std::floor(std::log10(std::abs(value))));
-  const auto size = static_cast<std::size_t>(std::abs(shift));
-  if (size >= std::size(kExact)) return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr);
-  const double power = kExact[size];
+  const auto exponent = static_cast<std::size_t>(std::abs(shift));
+  if (exponent >= std::size(kPowersOfTen)) return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr);
+  const double power = kPowersOfTen[exponent];
   return shift < 0 ? std::round(value / power) * power : std::round(value * power) / power;
 }
 inline Json rounded_list(std::span<const double> values, int digits) {

@@ -14,8 +14,10 @@ namespace tribofit {
 
 namespace {
 
-/// Slips before and after a change that it may touch.
-constexpr std::ptrdiff_t kBeside = 2;
+/// Slips before and after a change that it may touch, and the part of its time over which a change that is smoothed
+/// does so, twice over.
+constexpr std::ptrdiff_t kSlipsTouched = 2;
+constexpr double kTimeTouched = 0.02;
 
 /// What slips leave, whitened, when the change comes at one time or another. It touches the slips beside it alone:
 /// those further away are looked at once, before the change and after it.
@@ -50,9 +52,9 @@ class ChangeInTime {
     std::vector<Eigen::MatrixXd> blocks = after_;
     const ModelResiduals residuals = residuals_;  // formulas must not be shared between threads
     const std::vector<double> p = with_change_at(time);
-    for (std::ptrdiff_t i = 0; i < std::min(next + kBeside, std::ssize(order_)); ++i) {
+    for (std::ptrdiff_t i = 0; i < std::min(next + kSlipsTouched, std::ssize(order_)); ++i) {
       const std::size_t k = order_[static_cast<std::size_t>(i)];
-      blocks[k] = i < next - kBeside ? before_[k] : residuals.residual_block(k, p.data());
+      blocks[k] = i < next - kSlipsTouched ? before_[k] : residuals.residual_block(k, p.data());
       if (blocks[k].size() == 0) return std::numeric_limits<double>::infinity();
     }
     const std::vector<double> left = residuals.squares_of(std::move(blocks));
@@ -72,21 +74,26 @@ class ChangeInTime {
     return p;
   }
 
-  /// Sets what slips leave before the change and after it; false where the model is not finite. Where the change is now
-  /// they are all on one side of it, which may be known: only the other side is looked at.
+  /// Sets what slips leave before the change and after it; false where the model is not finite. Slips that are far from
+  /// where the change is now are on one side of it, which may be known: they are looked at on the other side alone.
   bool look_before_and_after(const Observations& observations) {
     constexpr double kFar = 1e6;  // [s], far from any record
     before_ = residuals_.residual_blocks(p_.data());
     if (before_.empty()) return false;
     after_ = before_;
-    const auto begins_before = [&](std::size_t k, double time) {
-      return observations.time[observations.slips[k].begin] <= time;
-    };
-    const auto next = std::partition_point(order_.begin(), order_.end(),
-                                           [&](std::size_t k) { return begins_before(k, p_[point_.time]); });
-    const auto first = next - std::min(kBeside, next - order_.begin()),
-               last = next + std::min(kBeside, order_.end() - next);
-    return look_at({order_.begin(), last}, -kFar, after_) && look_at({first, order_.end()}, kFar, before_);
+    const auto begin_of = [&](std::size_t k) { return observations.time[observations.slips[k].begin]; };
+    const auto end_of = [&](std::size_t k) { return observations.time[observations.slips[k].end - 1]; };
+    double records = 1;
+    for (const auto& slip : observations.slips) records = std::max(records, 1.0 + static_cast<double>(slip.record));
+    const double cycle =
+        (begin_of(order_.back()) - begin_of(order_.front())) * records / static_cast<double>(order_.size());
+    const double now = p_[point_.time], near = kTimeTouched * std::abs(now) + kSlipsTouched * cycle;
+    std::vector<std::size_t> not_after, not_before;
+    for (const std::size_t k : order_) {
+      if (begin_of(k) <= now + near) not_after.push_back(k);
+      if (end_of(k) >= now - near) not_before.push_back(k);
+    }
+    return look_at(not_after, -kFar, after_) && look_at(not_before, kFar, before_);
   }
   bool look_at(const std::vector<std::size_t>& slips, double time, std::vector<Eigen::MatrixXd>& out) const {
     std::vector<Eigen::MatrixXd> blocks = residuals_.of_slips(slips).residual_blocks(with_change_at(time).data());

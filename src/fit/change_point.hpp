@@ -25,8 +25,8 @@ std::optional<ChangePoint> change_point_of(const FrictionModel& model);
 
 /// Time of change within its bounds that leaves least, the other parameters staying [s]; as it is where the bounds hold
 /// it. residuals: over all slips of the observations.
-/// Cost: an evaluation, another where the residuals at p are not known (ModelResiduals::Whitening::left), and some 120
-/// of single slips, which threads share.
+/// Cost: an evaluation, another where the whitening did not keep the residuals at p, and some 120 of single slips,
+/// which threads share.
 double best_change(const ChangePoint& point, const ModelResiduals& residuals, const Observations& observations,
                    const Bounds& bounds, std::vector<double> p, int threads);
 

@@ -43,7 +43,7 @@ Eigen::VectorXd step_without(const FitContext& context, const Solution& solution
   return levels - inverse_where_known(curvature, equations.total, free) * (gradient + curvature * levels);
 }
 
-/// Each value is a sample and each sample that counts is among them: what is left of the values is left of the record.
+/// Every value is one sample, and none is spoilt: the observations hold all that the record does.
 bool are_all_samples(const Observations& observations, const std::vector<double>& counts) {
   double values = static_cast<double>(observations.size());
   for (const auto& slip : observations.slips) {

@@ -86,6 +86,9 @@ inline constexpr int kMostRefiningSteps = 12;
 /// A look takes one such step, of any length: where it leaves more than this many times what was left before it, it led
 /// astray along a flat valley and is not taken.
 inline constexpr double kRiseOfLook = 1.01;
+/// Of every so many slips it is seen first whether it does, so that the derivatives are taken where they will be
+/// needed.
+inline constexpr std::size_t kSlipsApart = 17;
 
 // ---- slips
 

@@ -270,7 +270,7 @@ bool ModelResiduals::evaluate(const double* p, double* residual, double* jacobia
 }
 
 std::vector<Eigen::MatrixXd> ModelResiduals::residual_blocks(const double* p) const {
-  if (was_left_at(p)) return blocks_of_left();
+  if (was_whitened_at(p)) return kept_blocks();
   std::vector<Block> blocks;
   return compressed(p, false, blocks) ? blocks : std::vector<Block>();
 }

@@ -61,10 +61,13 @@ class ModelResiduals final : public Residuals {
     std::vector<double> level;   ///< delta_i of every slip as predicted: the least-squares one, shrunk by the scatter
     std::vector<double> weight;  ///< of every slip in the mean: s^2 g'g/(sigma^2 + s^2 g'g)
     std::vector<double> log_spread;  ///< log(1 + s^2 g'g/sigma^2) of every slip: what its likelihood pays for scatter
-    std::vector<double> p;           ///< where it was made, when it was asked to keep what the model leaves there:
-    std::vector<Eigen::VectorXd> left;  ///< of every slip, its rows as those of g
-    double slow = 0;                    ///< t^2/sigma^2; 0: no noise raises whole slips
-    double stick = 1;                   ///< to which the squares of stick are weakened
+    double slow = 0;                 ///< t^2/sigma^2; 0: no noise raises whole slips
+    double stick = 1;                ///< to which the squares of stick are weakened
+    /// Where it was made, and the residuals of every slip there, in rows as those of g; empty where they were not kept.
+    std::vector<double> p;
+    std::vector<Eigen::VectorXd> residuals;
+
+    void forget_residuals() { p.clear(), residuals.clear(); }
 
     bool any() const { return part > 0 || slow > 0; }
   };
@@ -113,7 +116,7 @@ class ModelResiduals final : public Residuals {
 
   /// Residuals of every slip at p, compressed, and those of one slip (a place in slips()): what changes in few slips
   /// needs to be looked at in those alone. Empty where the model is not finite. Costs little where the whitening kept
-  /// what the model leaves.
+  /// the residuals at p, which are then those of the model, observations and loss that it was made with.
   std::vector<Eigen::MatrixXd> residual_blocks(const double* p) const;
   Eigen::MatrixXd residual_block(std::size_t k, const double* p) const;
   /// Their sum of squares of every slip, whitened.
@@ -148,9 +151,9 @@ class ModelResiduals final : public Residuals {
     whitening_ = &whitening;
     own_levels_ = own_levels && options_.loss == Loss::squares;
   }
-  /// The whitening that the residuals at p call for; none where no slip begins with a break-away. keep_left: those
-  /// residuals are kept in it.
-  Whitening whitening_at(const double* p, bool keep_left = false) const;
+  /// The whitening that the residuals at p call for; none where no slip begins with a break-away.
+  /// keep_residuals: they are kept in it.
+  Whitening whitening_at(const double* p, bool keep_residuals = false) const;
 
  private:
   /// Columns J (when asked for), r, g of one slip; compressed to as many rows as columns at the most.
@@ -190,12 +193,12 @@ class ModelResiduals final : public Residuals {
             bool plain = false) const;
   bool compressed(const double* p, bool with_jacobian, std::vector<Block>& blocks,
                   const FurtherColumns& further = {}) const;
-  bool was_evaluated(const double* p) const;  ///< by white_blocks(), and last
-  bool was_left_at(const double* p) const;    ///< what the whitening kept is what the model leaves at p
+  bool was_evaluated(const double* p) const;    ///< by white_blocks(), and last
+  bool was_whitened_at(const double* p) const;  ///< the whitening kept the residuals at p
   /// Blocks with the Jacobian, whitened; nullptr where the model is not finite. A search often asks once more for
   /// where another one ended.
   const std::vector<Block>* white_blocks(const double* p) const;
-  std::vector<Block> blocks_of_left() const;  ///< as residual_blocks() has them
+  std::vector<Block> kept_blocks() const;  ///< as residual_blocks() has them
   /// As compressed(), of the slips [begin, end).
   bool compress(std::size_t begin, std::size_t end, const double* p, bool with_jacobian, std::vector<Block>& blocks,
                 const FurtherColumns& further) const;

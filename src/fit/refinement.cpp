@@ -38,11 +38,10 @@ std::vector<std::size_t> movable(const Linearisation& here, const Bounds& bounds
   return out;
 }
 
-/// Of many slips a sixteenth, of both directions.
-std::vector<std::size_t> every_so_many(const std::vector<std::size_t>& slips) {
-  constexpr std::size_t kApart = 17;
+/// Every so many of the slips: kSlipsApart is odd, so that both directions take part.
+std::vector<std::size_t> few_of(const std::vector<std::size_t>& slips) {
   std::vector<std::size_t> out;
-  for (std::size_t k = 0; k < slips.size(); k += kApart) out.push_back(slips[k]);
+  for (std::size_t k = 0; k < slips.size(); k += kSlipsApart) out.push_back(slips[k]);
   return out;
 }
 
@@ -77,11 +76,12 @@ double take_gauss_newton_step(const Linearisation& here, const Bounds& bounds, d
 
 }  // namespace
 
-void find_change(const FitContext& context, const ChangePoint& change, Bounds& held, std::vector<double>& p) {
+void find_change(FitContext& context, const ChangePoint& change, Bounds& held, std::vector<double>& p) {
   // Slips at levels of their own would hide a change that is misplaced.
   const ModelResiduals residuals = context.residuals(all_slips(context.observations), false);
   p[change.time] = best_change(change, residuals, context.observations, context.bounds, p, context.evaluation.threads);
   held.lower[change.time] = held.upper[change.time] = p[change.time];
+  context.whitening.forget_residuals();
 }
 
 bool refine(FitContext& context, const std::optional<ChangePoint>& change, Bounds& held, std::vector<double>& p) {
@@ -120,7 +120,7 @@ ModelResiduals refine_look(FitContext& context, const std::optional<ChangePoint>
     return !(to.squares_with_scatter(next.data()) <= kRiseOfLook * from.squares_with_scatter(p.data()));
   };
   ModelResiduals there = residuals;  // each holds its Jacobian, of which one is needed next
-  const ModelResiduals few = residuals.of_slips(every_so_many(all));
+  const ModelResiduals few = residuals.of_slips(few_of(all));
   if (!leads_astray(few, few)) linearise(there, next);  // most likely it is that one
   if (leads_astray(there, residuals)) return residuals;
   p = std::move(next);

@@ -22,6 +22,7 @@ ModelResiduals refine_look(FitContext& context, const std::optional<ChangePoint>
                            std::vector<double>& p);
 
 /// Moves the time of the change in p to where it leaves least, with the whitening of the context, and holds it there.
-void find_change(const FitContext& context, const ChangePoint& change, Bounds& held, std::vector<double>& p);
+/// The residuals that the whitening kept are used up.
+void find_change(FitContext& context, const ChangePoint& change, Bounds& held, std::vector<double>& p);
 
 }  // namespace tribofit

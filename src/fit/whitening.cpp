@@ -115,7 +115,7 @@ void whiten_break_away(const std::vector<Products>& slips, const Observations& o
 
 }  // namespace
 
-ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p, bool keep_left) const {
+ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p, bool keep_residuals) const {
   Whitening out;
   out.g.resize(observations_.slips.size());
   out.level.assign(observations_.slips.size(), 0.0);
@@ -124,7 +124,7 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p, bool kee
       std::any_of(slips_.begin(), slips_.end(), [this](std::size_t s) { return observations_.slips[s].from_stick; });
   if (!breaks_away) return out;
   std::vector<Products> all(slips_.size());
-  std::vector<Eigen::VectorXd> left(keep_left ? observations_.slips.size() : 0);
+  std::vector<Eigen::VectorXd> kept(keep_residuals ? observations_.slips.size() : 0);
   const bool finite = in_parts([&](const ModelResiduals& own, std::size_t begin, std::size_t end) {
     Workspace workspace;
     Block block;
@@ -138,12 +138,12 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p, bool kee
       all[k] = {
           slips_[k],      static_cast<double>(rows), g.squaredNorm(), g.dot(u), u.squaredNorm(), g.dot(r), u.dot(r),
           r.squaredNorm()};
-      if (keep_left) left[slips_[k]] = r;
+      if (keep_residuals) kept[slips_[k]] = r;
     }
     return true;
   });
   if (!finite) return out;
-  if (keep_left) out.p.assign(p, p + parameter_count()), out.left = std::move(left);
+  if (keep_residuals) out.p.assign(p, p + parameter_count()), out.residuals = std::move(kept);
   std::vector<Products> slips;
   std::copy_if(all.begin(), all.end(), std::back_inserter(slips), [](const Products& slip) { return slip.gg > 0; });
   out.slow = slow_noise_of_slips(slips, observations_);
@@ -152,16 +152,16 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p, bool kee
   return out;
 }
 
-bool ModelResiduals::was_left_at(const double* p) const {
-  return whitening_ != nullptr && !own_levels_ && weights_.empty() && !whitening_->p.empty() &&
+bool ModelResiduals::was_whitened_at(const double* p) const {
+  return whitening_ != nullptr && !own_levels_ && weights_.empty() && whitening_->p.size() == parameter_count() &&
          std::equal(whitening_->p.begin(), whitening_->p.end(), p);
 }
 
-std::vector<ModelResiduals::Block> ModelResiduals::blocks_of_left() const {
+std::vector<ModelResiduals::Block> ModelResiduals::kept_blocks() const {
   std::vector<Block> blocks;
   for (const std::size_t k : slips_) {
-    Block block(whitening_->left[k].size(), 2);
-    block << whitening_->left[k], whitening_->g[k];
+    Block block(whitening_->residuals[k].size(), 2);
+    block << whitening_->residuals[k], whitening_->g[k];
     if (whitening_->slow > 0) whiten_level(observations_.slips[k], block);
     blocks.push_back(triangular_factor(block));
   }

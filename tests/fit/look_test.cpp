@@ -1,11 +1,16 @@
 /// A look (FitOptions::starts == 0) against the fit that it stands for.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "fit/change_point.hpp"
+#include "fit/errors.hpp"
 #include "fit/model_residuals.hpp"
 #include "synthetic.hpp"
 #include "tribofit/fit/fit.hpp"
@@ -94,8 +99,9 @@ TEST(NormalEquations, AreTheSameBehindAnEvaluationAndWithoutOne) {
   EXPECT_LT((gradient - j.transpose() * r).norm(), 1e-6 * (j.transpose().cwiseAbs() * r.cwiseAbs()).norm());
 }
 
-/// Squares of slips that the whitening knows are those that are evaluated, and elsewhere nothing is known.
-TEST(SquaresOfSlips, AreTheSameWhereTheWhiteningKeptWhatIsLeft) {
+/// Squares of slips by the residuals that the whitening kept are those that are evaluated; elsewhere, and with slips at
+/// their own levels, those kept are not used.
+TEST(SquaresOfSlips, AreTheSameWhereTheWhiteningKeptResiduals) {
   const FrictionModel model(make_law("exponential"), {make_effect("frictional-lag")});
   const synthetic::Record record = record_of(model, {2e-3}, 20);
   const Observations observations = observe(record.motion, record.segmentation, model.needs());
@@ -104,41 +110,83 @@ TEST(SquaresOfSlips, AreTheSameWhereTheWhiteningKeptWhatIsLeft) {
   const ModelResiduals plain(model, observations, all_slips(observations));
   ModelResiduals::Whitening kept = plain.whitening_at(p.data(), true), not_kept = plain.whitening_at(p.data());
   ASSERT_GT(kept.part, 0);
-  for (const double slow : {0.0, 1e-3}) {
+  ASSERT_EQ(kept.residuals.size(), observations.slips.size());
+  for (const auto& [slow, own_levels] : {std::pair(0.0, false), {1e-3, false}, {0.0, true}}) {
     kept.slow = not_kept.slow = slow;
     ModelResiduals knows(plain), evaluates(plain);
-    knows.whiten(kept), evaluates.whiten(not_kept);
+    knows.whiten(kept, own_levels), evaluates.whiten(not_kept, own_levels);
     for (const double times : {1.0, 1.1}) {
       std::vector<double> at = p;
       at[1] *= times;
       const auto known = knows.squares_of(knows.residual_blocks(at.data()));
       const auto truth = evaluates.squares_of(evaluates.residual_blocks(at.data()));
       ASSERT_EQ(known.size(), observations.slips.size());
-      for (std::size_t k = 0; k < truth.size(); ++k) EXPECT_NEAR(known[k], truth[k], 1e-10 * truth[k]) << slow;
+      for (std::size_t k = 0; k < truth.size(); ++k)
+        EXPECT_NEAR(known[k], truth[k], 1e-10 * truth[k]) << slow << own_levels;
     }
   }
 }
 
-/// Wherever it begins, the search for a change ends where the change is.
-TEST(BestChange, IsFoundFromBothSidesOfIt) {
+/// Wherever it begins, the search for a change ends where all slips, evaluated with the change in each gap between two,
+/// leave least.
+TEST(BestChange, IsWhereLeastIsLeftWhereverTheSearchBegins) {
   const FrictionModel model(make_law("exponential"), {make_effect("step")});
-  const synthetic::Record bare = record_of(FrictionModel(make_law("exponential")), {}, 30);
-  const double truth = 0.37 * bare.motion.time.back();
-  const synthetic::Record record = record_of(model, {0.03, truth}, 30);
+  const double end = record_of(FrictionModel(make_law("exponential")), {}, 30).motion.time.back();
+  const synthetic::Record record = record_of(model, {0.03, 0.37 * end}, 30);
   const Observations observations = observe(record.motion, record.segmentation, model.needs());
   const std::optional<ChangePoint> change = change_point_of(model);
   ASSERT_TRUE(change);
   const Bounds bounds = bounds_of(model, observations);
   std::vector<double> p = synthetic::table4_15mm(make_law("exponential"));
-  p.insert(p.end(), {0.03, truth});
-  const double period = record.motion.time.back() / 30;
-  for (const bool keep_left : {false, true}) {
-    for (const double begin : {0.02, 0.2, 0.37, 0.6, 0.98}) {
-      p[change->time] = begin * record.motion.time.back();
+  p.insert(p.end(), {0.03, 0.0});
+  for (const bool keep_residuals : {false, true}) {
+    for (const double begin : {0.02, 0.2, 0.36, 0.37, 0.38, 0.6, 0.98}) {
+      p[change->time] = begin * end;
       ModelResiduals residuals(model, observations, all_slips(observations));
-      const ModelResiduals::Whitening whitening = residuals.whitening_at(p.data(), keep_left);
+      const ModelResiduals::Whitening whitening = residuals.whitening_at(p.data(), keep_residuals);
       residuals.whiten(whitening);
-      EXPECT_NEAR(best_change(*change, residuals, observations, bounds, p, 1), truth, period) << begin << keep_left;
+      const double found = best_change(*change, residuals, observations, bounds, p, 1);
+      double least = std::numeric_limits<double>::infinity();
+      std::vector<double> at = p;
+      for (std::size_t k = 1; k < observations.slips.size(); ++k) {
+        at[change->time] = 0.5 * (observations.time[observations.slips[k - 1].end - 1] +
+                                  observations.time[observations.slips[k].begin]);
+        least = std::min(least, residuals.white_squares(at.data()));
+      }
+      at[change->time] = found;
+      EXPECT_LE(residuals.white_squares(at.data()), least * (1 + 1e-9)) << begin << keep_residuals;
+      EXPECT_NEAR(found, 0.37 * end, end / 30) << begin << keep_residuals;
+    }
+  }
+}
+
+/// Held-out errors are those of every sample of a cycle under the parameters without it, whether values are samples,
+/// or not, or samples are spoilt.
+TEST(HeldOutErrors, AreThoseOfSamples) {
+  const FrictionModel model(make_law("exponential"), {make_effect("frictional-lag")});
+  synthetic::Record record = record_of(model, {2e-3}, 20);
+  for (const bool spoilt : {false, true}) {
+    if (spoilt) {
+      record.motion.faults.assign(record.motion.size(), 0);
+      record.motion.faults[record.segmentation.cycles[3].slip.begin + 5] = SampleFault::friction;
+    }
+    const Record one = {&record.motion, &record.segmentation};
+    for (const auto& [starts, values] : {std::pair(0, 0U), {3, 0U}, {0, 80U}, {3, 80U}}) {
+      const Observations observations = observe(record.motion, record.segmentation, model.needs(), values);
+      ASSERT_EQ(observations.samples_per_value == 1, values == 0);
+      FitOptions options;
+      options.starts = starts;
+      const Fit fit = fit_model(model, record.motion, record.segmentation, observations, {}, options);
+      double squares = 0, counts = 0;
+      for (std::size_t fold = 0; fold < fit.fold_parameters.size(); ++fold) {
+        const FullRecord full(std::span(&one, 1), observations, model.needs());
+        const SampleErrors errors = sample_errors(model, fit.fold_parameters[fold], full, observations);
+        for (std::size_t c = 0; c < errors.squares.size(); ++c) {
+          if (fit.cycle_folds[c] == fold) squares += errors.squares[c], counts += errors.counts[c];
+        }
+      }
+      const double truth = std::sqrt(squares / counts), near = values == 0 && !spoilt ? 1e-9 : 1e-4;
+      EXPECT_NEAR(fit.error.held_out_rmse, truth, near * truth) << spoilt << starts << values;
     }
   }
 }

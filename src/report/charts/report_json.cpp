@@ -82,10 +82,9 @@ Json axis_json(const ChartAxis& axis) {
 
 Json line_json(const ChartLine& line, int digits_of_x) {
   const Stroke& stroke = line.stroke;
-  Json json = object("name", line.name, "x", rounded_list(line.x, digits_of_x), "colour",
-                     style_of(stroke.colour, kColours).name, "dash", style_of(stroke.dash, kDashes).name, "width",
-                     stroke.width);
-  make_room(json, 11);  // what follows
+  Json json = object_with_room(10, "name", line.name, "x", rounded_list(line.x, digits_of_x), "colour",
+                               style_of(stroke.colour, kColours).name, "dash", style_of(stroke.dash, kDashes).name,
+                               "width", stroke.width);
   add_given(json, "y", rounded_list(line.y, kDigits), "low", rounded_list(line.low, kDigits), "high",
             rounded_list(line.high, kDigits), "bars", line.bars, "panel", line.panel);
   if (stroke.symbol != Symbol::none)
@@ -98,8 +97,8 @@ Json line_json(const ChartLine& line, int digits_of_x) {
 
 Json map_json(const HeatMap& map, const ChartAxis& x) {
   const auto row = [](const std::vector<double>& values) { return rounded_list(values, 4); };
-  Json json = object("x", rounded_list(map.x, x.digits), "y", rounded_list(map.y, kDigits), "z", list_of(map.z, row),
-                     "quantity", map.quantity, "unit", map.unit);
+  Json json = object_with_room(4, "x", rounded_list(map.x, x.digits), "y", rounded_list(map.y, kDigits), "z",
+                               list_of(map.z, row), "quantity", map.quantity, "unit", map.unit);
   add_given(json, "low", map.low, "high", map.high, "diverging", map.diverging, "contours", map.contours);
   return json;
 }
@@ -134,7 +133,8 @@ Json item_json(const ReportTable& table) {
     if (column.number) numeric.push_back(header.size());
     header.push_back(column.name);
   }
-  Json json = object("type", "table", "caption", table.caption, "header", std::move(header), "rows", table.rows);
+  Json json =
+      object_with_room(2, "type", "table", "caption", table.caption, "header", std::move(header), "rows", table.rows);
   add_given(json, "numeric", numeric, "folded", table.folded);
   return json;
 }
@@ -156,9 +156,8 @@ Json item_json(const Chart& chart) {
                   style_of(b.colour, kColours).name, "hatched", b.hatched);
   };
   const auto line = [&](const ChartLine& l) { return line_json(l, chart.x.digits); };
-  Json json = object("type", "chart", "id", chart.id, "title", chart.title, "note", chart.note, "height", chart.height,
-                     "x", axis_json(chart.x), "panels", list_of(chart.panels, panel));
-  make_room(json, 7);  // what follows
+  Json json = object_with_room(7, "type", "chart", "id", chart.id, "title", chart.title, "note", chart.note, "height",
+                               chart.height, "x", axis_json(chart.x), "panels", list_of(chart.panels, panel));
   add_given(json, "half", chart.half, "lines", list_of(chart.lines, line), "bars", list_of(chart.bars, bars));
   if (chart.map) json["map"] = map_json(*chart.map, chart.x);
   add_annotations(chart, json);
