@@ -205,16 +205,18 @@ bool is_beaten(const DiagnosisContext& context, const Ladder& ladder, const std:
   });
 }
 
-/// The shortest ladder of those that are still worth a rung, the one that predicts best of those as long; none left:
-/// nullptr.
+/// The ladder that predicts best of those that are still worth a rung and not ahead of another by more than one; none
+/// left: nullptr.
 Ladder* next_to_climb(const DiagnosisContext& context, std::vector<Ladder>& ladders, bool all_matter) {
-  Ladder* next = nullptr;
+  std::vector<Ladder*> worthy;
   for (Ladder& ladder : ladders) {
-    if (ladder.finished || (!all_matter && is_beaten(context, ladder, ladders))) continue;
-    const auto order = [](const Ladder& l) { return std::pair(l.steps.size(), l.top().held_out_squares); };
-    if (next == nullptr || order(ladder) < order(*next)) next = &ladder;
+    if (!ladder.finished && (all_matter || !is_beaten(context, ladder, ladders))) worthy.push_back(&ladder);
   }
-  return next;
+  if (worthy.empty()) return nullptr;
+  const auto height = [](const Ladder* ladder) { return ladder->steps.size(); };
+  const std::size_t lowest = std::ranges::min(worthy, {}, height)->steps.size();
+  std::erase_if(worthy, [&](const Ladder* ladder) { return height(ladder) > lowest + 1; });
+  return std::ranges::min(worthy, {}, [](const Ladder* ladder) { return ladder->top().held_out_squares; });
 }
 
 /// A law does without one of the effects of a ladder what that ladder's law does with it, or better as it stands.

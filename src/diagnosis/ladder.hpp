@@ -62,11 +62,11 @@ struct ClimbLimits {
 
 /// Adds effects to each base law, the best one at a time, until nothing passes; then drops what became redundant.
 ///
-/// The shortest ladder is climbed first, of those as long the one that predicts best. Once one is finished that leaves
-/// nothing unexplained, another that is as long and no better is given up where it stands: only with more rungs could
-/// it do as well. A law that fits badly earns rung after rung; climbed to its end first, it cost most of a diagnosis.
-/// So when time is over the ladders are about as high, and none need be finished. from_the_start: effects that stand
-/// beside each law on every rung. progress: may be empty.
+/// The ladder that predicts best so far is climbed first, until it is two rungs ahead of another: a law that fits badly
+/// earns rung after rung, and would take most of a diagnosis. Once one is finished that leaves nothing unexplained,
+/// another that is as long and no better is given up where it stands: only with more rungs could it do as well.
+/// When time is over, none need be finished.
+/// from_the_start: effects that stand beside each law on every rung. progress: may be empty.
 Climb climb(const DiagnosisContext& context, const CompetingLaws& laws, const std::vector<Candidate>& from_the_start,
             const std::vector<Candidate>& candidates, const Limits& least, const ClimbLimits& limits,
             const std::function<void(std::string_view, double)>& progress = {});
