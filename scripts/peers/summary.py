@@ -8,6 +8,7 @@ takes more follows the speed of reading. --markdown: where the table is written.
 
 import argparse
 import json
+import statistics
 import sys
 
 parser = argparse.ArgumentParser(usage=__doc__)
@@ -21,7 +22,11 @@ given = parser.parse_args()
 with open(given.times, encoding="utf-8") as file:
     results = {result["command"]: result for result in json.load(file)["results"]}
 with open(given.memory, encoding="utf-8") as file:
-    memory = {name: int(kib) * 1024 / 1e6 for name, kib in (line.rstrip("\n").split("\t") for line in file)}
+    peaks = {}
+    for line in file:
+        name, kib = line.rstrip("\n").split("\t")
+        peaks.setdefault(name, []).append(int(kib) * 1024 / 1e6)
+memory = {name: statistics.median(values) for name, values in peaks.items()}
 
 ours = results.get("identify", {}).get("median")
 print(f"{'':26}{'median':>9}{'min':>9}{'max':>9}{'peak memory':>14}" + (f"{'identify takes':>18}" if ours else ""))
