@@ -31,6 +31,16 @@ synthetic::Record record_of(const FrictionModel& model, const std::vector<double
   return synthetic::make(model, truth, options);
 }
 
+/// A record of a lag, and a place beside its true parameters.
+struct LagOffItsTruth {
+  FrictionModel model{make_law("exponential"), {make_effect("frictional-lag")}};
+  synthetic::Record record = record_of(model, {2e-3}, 20);
+  Observations observations = observe(record.motion, record.segmentation, model.needs());
+  std::vector<double> p = synthetic::table4_15mm(make_law("exponential"));
+
+  LagOffItsTruth() { p.push_back(2.2e-3); }
+};
+
 /// Short records are searched as a whole, long ones on some of their slips or on means.
 TEST(Look, IsNearTheFitOnShortAndLongRecords) {
   struct Added {
@@ -57,11 +67,8 @@ TEST(Look, IsNearTheFitOnShortAndLongRecords) {
 }
 
 TEST(NormalEquations, AreTheSameBehindAnEvaluationAndWithoutOne) {
-  const FrictionModel model(make_law("exponential"), {make_effect("frictional-lag")});
-  const synthetic::Record record = record_of(model, {2e-3}, 20);
-  const Observations observations = observe(record.motion, record.segmentation, model.needs());
-  std::vector<double> p = synthetic::table4_15mm(make_law("exponential"));
-  p.push_back(2.2e-3);
+  const LagOffItsTruth lag;
+  const auto& [model, record, observations, p] = lag;
   const std::vector<std::size_t> all = all_slips(observations);
   const ModelResiduals::Whitening whitening = ModelResiduals(model, observations, all).whitening_at(p.data());
   ASSERT_GT(whitening.part, 0);
@@ -102,11 +109,8 @@ TEST(NormalEquations, AreTheSameBehindAnEvaluationAndWithoutOne) {
 /// Squares of slips by the residuals that the whitening kept are those that are evaluated; elsewhere, and with slips at
 /// their own levels, those kept are not used.
 TEST(SquaresOfSlips, AreTheSameWhereTheWhiteningKeptResiduals) {
-  const FrictionModel model(make_law("exponential"), {make_effect("frictional-lag")});
-  const synthetic::Record record = record_of(model, {2e-3}, 20);
-  const Observations observations = observe(record.motion, record.segmentation, model.needs());
-  std::vector<double> p = synthetic::table4_15mm(make_law("exponential"));
-  p.push_back(2.2e-3);
+  const LagOffItsTruth lag;
+  const auto& [model, record, observations, p] = lag;
   const ModelResiduals plain(model, observations, all_slips(observations));
   ModelResiduals::Whitening kept = plain.whitening_at(p.data(), true), not_kept = plain.whitening_at(p.data());
   ASSERT_GT(kept.part, 0);
