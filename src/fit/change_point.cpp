@@ -7,17 +7,13 @@
 #include <utility>
 #include <vector>
 
+#include "limits.hpp"
 #include "tribofit/statistics/change_point.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 
 namespace {
-
-/// Slips before and after a change that it may touch, and the part of its time over which a change that is smoothed
-/// does so, twice over.
-constexpr std::ptrdiff_t kSlipsTouched = 2;
-constexpr double kTimeTouched = 0.02;
 
 /// What slips leave, whitened, when the change comes at one time or another. It touches the slips beside it alone:
 /// those further away are looked at once, before the change and after it.

@@ -86,9 +86,14 @@ inline constexpr int kMostRefiningSteps = 12;
 /// A look takes one such step, of any length: where it leaves more than this many times what was left before it, it led
 /// astray along a flat valley and is not taken.
 inline constexpr double kRiseOfLook = 1.01;
-/// Of every so many slips it is seen first whether it does, so that the derivatives are taken where they will be
-/// needed.
+/// One of so many slips says first whether it does, so that derivatives are taken where they will be needed; odd, so
+/// that both directions take part.
 inline constexpr std::size_t kSlipsApart = 17;
+
+/// Slips before and after a change that it may touch; and the part of its time in which it may, twice that over which a
+/// change is smoothed to have a derivative.
+inline constexpr std::ptrdiff_t kSlipsTouched = 2;
+inline constexpr double kTimeTouched = 0.02;
 
 // ---- slips
 

@@ -38,7 +38,7 @@ std::vector<std::size_t> movable(const Linearisation& here, const Bounds& bounds
   return out;
 }
 
-/// Every so many of the slips: kSlipsApart is odd, so that both directions take part.
+/// One of every kSlipsApart slips.
 std::vector<std::size_t> few_of(const std::vector<std::size_t>& slips) {
   std::vector<std::size_t> out;
   for (std::size_t k = 0; k < slips.size(); k += kSlipsApart) out.push_back(slips[k]);
