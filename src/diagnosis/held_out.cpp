@@ -123,9 +123,13 @@ Eigen::VectorXd bounded_step(const Linearised& model, const Eigen::VectorXd& low
 
 std::vector<double> squares_after(const Linearised& model, const Eigen::VectorXd& step) {
   std::vector<double> out;
+  out.reserve(model.rows.size());
+  Eigen::VectorXd left;  // its memory serves every cycle
   for (const Eigen::MatrixXd& rows : model.rows) {
     const Eigen::Index n = rows.cols() - 1;
-    out.push_back((rows.col(n) + rows.leftCols(n) * step).squaredNorm());
+    left = rows.col(n);
+    left.noalias() += rows.leftCols(n) * step;
+    out.push_back(left.squaredNorm());
   }
   return out;
 }

@@ -53,7 +53,7 @@ class ChangeInTime {
       blocks[k] = i < next - kSlipsTouched ? before_[k] : residuals.residual_block(k, p.data());
       if (blocks[k].size() == 0) return std::numeric_limits<double>::infinity();
     }
-    const std::vector<double> left = residuals.squares_of(std::move(blocks));
+    const std::vector<double> left = residuals.squares_of(blocks);
     return std::accumulate(left.begin(), left.end(), 0.0);
   }
 

@@ -191,71 +191,33 @@ bool ModelResiduals::compress(std::size_t begin, std::size_t end, const double* 
       block = std::move(wider);
     }
     if (whitening_ != nullptr && whitening_->slow > 0) whiten_level(observations_.slips[slips_[k]], block);
-    blocks[k] = triangular_factor(block);
+    triangular_factor(block, blocks[k]);
   }
   return true;
 }
 
-Eigen::VectorXd ModelResiduals::level_column(const Observations::SlipObservation& range) const {
-  Eigen::VectorXd out(friction_rows(range));
-  for (std::size_t i = range.begin; i < range.end; ++i) {
-    out(static_cast<Eigen::Index>(i - range.begin)) = observations_.root_weight[i];
-  }
-  if (range.from_stick) out(out.size() - 1) = range.direction * range.break_away_root_weight;  // of |friction|
-  return out;
-}
-
-void ModelResiduals::whiten_level(const Observations::SlipObservation& range, Block& block) const {
-  const Eigen::VectorXd level = level_column(range);
-  const double norm = level.squaredNorm();
-  const double part = 1 - 1 / std::sqrt(1 + whitening_->slow * norm);
-  const Eigen::RowVectorXd mean = level.transpose() * block.topRows(level.size()) / norm;
-  block.topRows(level.size()) -= part * level * mean;
-}
-
-std::vector<Eigen::RowVectorXd> ModelResiduals::corrections(const std::vector<Block>& blocks) const {
-  std::vector<Eigen::RowVectorXd> out;
-  if (whitening_ == nullptr || whitening_->part <= 0 || blocks.empty()) return out;
-  const Eigen::Index columns = blocks[0].cols() - 1;
-  Eigen::RowVectorXd mean = Eigen::RowVectorXd::Zero(columns);
-  double weights = 0;
-  for (std::size_t k = 0; k < blocks.size(); ++k) {
-    const auto g = blocks[k].col(columns);
-    const double norm = g.squaredNorm(), weight = whitening_->weight[slips_[k]];
-    const Eigen::RowVectorXd projection = g.transpose() * blocks[k].leftCols(columns);
-    out.push_back(norm > 0 ? Eigen::RowVectorXd(projection / norm) : Eigen::RowVectorXd::Zero(columns));
-    mean += weight * out.back();
-    weights += weight;
-  }
-  if (weights > 0) mean /= weights;
-  for (Eigen::RowVectorXd& own : out) own = whitening_->part * (mean - own);
-  return out;
-}
-
 bool ModelResiduals::was_evaluated(const double* p) const {
-  return last_.p.size() == parameter_count() && std::equal(last_.p.begin(), last_.p.end(), p);
+  return kept_.last.p.size() == parameter_count() && std::equal(kept_.last.p.begin(), kept_.last.p.end(), p);
 }
 
 const std::vector<ModelResiduals::Block>* ModelResiduals::white_blocks(const double* p) const {
   const std::size_t n = parameter_count();
-  if (was_evaluated(p)) return &last_.blocks;
-  std::vector<Block> blocks = std::exchange(last_, {}).blocks;  // copies of this for other threads stay small
+  if (was_evaluated(p)) return &kept_.last.blocks;
+  std::vector<Block> blocks = std::exchange(kept_.last, {}).blocks;
   if (!compressed(p, true, blocks)) return nullptr;
-  std::vector<Eigen::RowVectorXd> added = corrections(blocks);
-  for (std::size_t k = 0; k < added.size(); ++k) {
-    const auto columns = static_cast<Eigen::Index>(n + 1);
-    blocks[k].leftCols(columns) += blocks[k].col(columns) * added[k];
-  }
-  last_ = {{p, p + n}, std::move(blocks), std::move(added)};
-  return &last_.blocks;
+  Eigen::MatrixXd added = corrections(blocks);
+  for (Eigen::Index k = 0; k < added.cols(); ++k) add_to(blocks[static_cast<std::size_t>(k)], k, added);
+  kept_.last = {{p, p + n}, std::move(blocks), std::move(added)};
+  return &kept_.last.blocks;
 }
 
 bool ModelResiduals::evaluate(const double* p, double* residual, double* jacobian) const {
   if (jacobian == nullptr) {
-    const std::vector<double> squares = squares_of(residual_blocks(p));
+    if (!find_residual_blocks(p, kept_.without_slopes)) return false;
+    const std::vector<double> squares = squares_of(kept_.without_slopes);
     std::fill_n(residual, count(), 0.0);
     for (std::size_t k = 0; k < squares.size(); ++k) residual[k * rows_per_slip()] = std::sqrt(squares[k]);
-    return squares.size() == slips_.size();
+    return true;
   }
   const std::vector<Block>* blocks = white_blocks(p);
   if (blocks == nullptr) return false;
@@ -270,9 +232,15 @@ bool ModelResiduals::evaluate(const double* p, double* residual, double* jacobia
 }
 
 std::vector<Eigen::MatrixXd> ModelResiduals::residual_blocks(const double* p) const {
-  if (was_whitened_at(p)) return kept_blocks();
   std::vector<Block> blocks;
-  return compressed(p, false, blocks) ? blocks : std::vector<Block>();
+  if (!find_residual_blocks(p, blocks)) blocks.clear();
+  return blocks;
+}
+
+bool ModelResiduals::find_residual_blocks(const double* p, std::vector<Block>& blocks) const {
+  if (!was_whitened_at(p)) return compressed(p, false, blocks);
+  take_kept_blocks(blocks);
+  return true;
 }
 
 Eigen::MatrixXd ModelResiduals::residual_block(std::size_t k, const double* p) const {
@@ -280,21 +248,11 @@ Eigen::MatrixXd ModelResiduals::residual_block(std::size_t k, const double* p) c
   return compress(k, k + 1, p, false, blocks, {}) ? std::move(blocks[k]) : Block();
 }
 
-std::vector<double> ModelResiduals::squares_of(std::vector<Eigen::MatrixXd> blocks) const {
-  const auto added = corrections(blocks);
-  std::vector<double> out;
-  for (std::size_t k = 0; k < blocks.size(); ++k) {
-    if (!added.empty()) blocks[k].leftCols(1) += blocks[k].col(1) * added[k];
-    out.push_back(blocks[k].col(0).squaredNorm());
-  }
-  return out;
-}
-
 std::vector<ModelResiduals::Normal> ModelResiduals::normal_equations(const double* p) const {
   const auto n = static_cast<Eigen::Index>(parameter_count());
   const std::vector<Block>* blocks = white_blocks(p);
   if (blocks == nullptr) return {};
-  const std::vector<Eigen::RowVectorXd>& added = last_.added;
+  const Eigen::MatrixXd& added = kept_.last.added;
   // M'M J of a slip is (I - c P_g) of its white rows, and through the mean of all slips g' (white rows) summed over
   // them.
   std::vector<Normal> out;
@@ -303,14 +261,15 @@ std::vector<ModelResiduals::Normal> ModelResiduals::normal_equations(const doubl
   for (std::size_t k = 0; k < blocks->size(); ++k) {
     const auto white = (*blocks)[k].leftCols(n);
     const auto r = (*blocks)[k].col(n), g = (*blocks)[k].col(n + 1);
-    if (added.empty()) {
+    if (added.cols() == 0) {
       out.push_back({white.transpose() * white, white.transpose() * r, Eigen::VectorXd::Zero(n)});
       continue;
     }
-    const double norm = g.squaredNorm(), own = norm > 0 ? g.dot(r) / norm - added[k](n) : 0;  // of r as it was
+    const double added_to_r = added(n, static_cast<Eigen::Index>(k));
+    const double norm = g.squaredNorm(), own = norm > 0 ? g.dot(r) / norm - added_to_r : 0;  // of r as it was
     const Eigen::VectorXd projection = white.transpose() * g;
     const double weight = whitening_->part * own;
-    out.push_back({white.transpose() * white, white.transpose() * r - (added[k](n) + weight) * projection,
+    out.push_back({white.transpose() * white, white.transpose() * r - (added_to_r + weight) * projection,
                    Eigen::VectorXd::Constant(n, weight * whitening_->weight[slips_[k]])});
     through_mean += projection;
     weights += whitening_->weight[slips_[k]];
@@ -337,7 +296,7 @@ std::vector<Eigen::MatrixXd> ModelResiduals::white_rows(const double* p, const F
   std::vector<Eigen::MatrixXd> out;
   for (std::size_t k = 0; k < blocks.size(); ++k) {
     out.push_back(blocks[k].leftCols(columns));
-    if (!added.empty()) out.back() += blocks[k].col(columns) * added[k];
+    if (added.cols() > 0) out.back() += blocks[k].col(columns) * added.col(static_cast<Eigen::Index>(k)).transpose();
   }
   return out;
 }
@@ -362,9 +321,9 @@ double ModelResiduals::squares_with_scatter(const double* p) const {
   const auto n = static_cast<Eigen::Index>(parameter_count());
   double sum = 0;
   if (was_evaluated(p)) {
-    for (std::size_t k = 0; k < last_.blocks.size(); ++k) {
-      const auto r = last_.blocks[k].col(n), g = last_.blocks[k].col(n + 1);
-      const double added = last_.added.empty() ? 0 : last_.added[k](n);
+    for (std::size_t k = 0; k < kept_.last.blocks.size(); ++k) {
+      const auto r = kept_.last.blocks[k].col(n), g = kept_.last.blocks[k].col(n + 1);
+      const double added = kept_.last.added.cols() > 0 ? kept_.last.added(n, static_cast<Eigen::Index>(k)) : 0;
       sum += (r - added * g).squaredNorm();
     }
     return sum;

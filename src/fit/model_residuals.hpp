@@ -110,7 +110,6 @@ class ModelResiduals final : public Residuals {
   ModelResiduals of_slips(std::vector<std::size_t> slips) const {
     ModelResiduals out = *this;
     out.slips_ = std::move(slips);
-    out.last_ = {};
     return out;
   }
 
@@ -120,7 +119,7 @@ class ModelResiduals final : public Residuals {
   std::vector<Eigen::MatrixXd> residual_blocks(const double* p) const;
   Eigen::MatrixXd residual_block(std::size_t k, const double* p) const;
   /// Their sum of squares of every slip, whitened.
-  std::vector<double> squares_of(std::vector<Eigen::MatrixXd> blocks) const;
+  std::vector<double> squares_of(const std::vector<Eigen::MatrixXd>& blocks) const;
 
   /// Sum of squares of all rows at p, whitened. NaN where the model is not finite.
   double white_squares(const double* p) const;
@@ -140,14 +139,14 @@ class ModelResiduals final : public Residuals {
 
   /// Takes the squares of stick for this part of what the noise of v_r makes of them.
   void weaken_stick(double part) {
-    last_.p.clear();
+    kept_.last.p.clear();
     for (Eigen::MatrixXd& weights : weights_) weights *= std::sqrt(part);
   }
 
   /// Whitens; `whitening` must outlive this object. own_levels: evaluate each slip at its own level; for the model that
   /// the whitening was made with.
   void whiten(const Whitening& whitening, bool own_levels = false) {
-    last_.p.clear();
+    kept_.last.p.clear();
     whitening_ = &whitening;
     own_levels_ = own_levels && options_.loss == Loss::squares;
   }
@@ -198,7 +197,9 @@ class ModelResiduals final : public Residuals {
   /// Blocks with the Jacobian, whitened; nullptr where the model is not finite. A search often asks once more for
   /// where another one ended.
   const std::vector<Block>* white_blocks(const double* p) const;
-  std::vector<Block> kept_blocks() const;  ///< as residual_blocks() has them
+  /// As residual_blocks(p), into memory that is there; false where the model is not finite.
+  bool find_residual_blocks(const double* p, std::vector<Block>& blocks) const;
+  void take_kept_blocks(std::vector<Block>& blocks) const;
   /// As compressed(), of the slips [begin, end).
   bool compress(std::size_t begin, std::size_t end, const double* p, bool with_jacobian, std::vector<Block>& blocks,
                 const FurtherColumns& further) const;
@@ -211,8 +212,11 @@ class ModelResiduals final : public Residuals {
   Eigen::VectorXd level_column(const Observations::SlipObservation& range) const;
   /// Takes out of the rows of a slip what that noise is expected to do.
   void whiten_level(const Observations::SlipObservation& range, Block& block) const;
-  /// c (mean over slips of the regression of the columns on g, less that of the slip), to be added as g times it.
-  std::vector<Eigen::RowVectorXd> corrections(const std::vector<Block>& blocks) const;
+  /// c (mean over slips of the regression of the columns on g, less that of the slip), to be added as g times it: one
+  /// column for each slip, a row for each of its columns but g. No columns where there is nothing to add.
+  Eigen::MatrixXd corrections(const std::vector<Block>& blocks) const;
+  /// Adds what is to be added to a slip.
+  static void add_to(Block& block, Eigen::Index slip, const Eigen::MatrixXd& added);
 
   FrictionModel model_;  // a copy: formulas must not be shared between threads
   const Observations& observations_;
@@ -225,9 +229,18 @@ class ModelResiduals final : public Residuals {
   struct Evaluated {
     std::vector<double> p;  ///< empty: none yet
     std::vector<Block> blocks;
-    std::vector<Eigen::RowVectorXd> added;  ///< see corrections(): what whitened them
+    Eigen::MatrixXd added;  ///< see corrections(): what whitened them
   };
-  mutable Evaluated last_;  ///< see white_blocks()
+  /// From one evaluation to the next; copies begin without it.
+  struct Kept {
+    Evaluated last;                     ///< see white_blocks()
+    std::vector<Block> without_slopes;  ///< memory for an evaluation without the Jacobian
+
+    Kept() = default;
+    Kept(const Kept&) {}
+    Kept(Kept&&) = default;
+  };
+  mutable Kept kept_;
 };
 
 template <class Work>

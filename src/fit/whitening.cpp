@@ -157,15 +157,69 @@ bool ModelResiduals::was_whitened_at(const double* p) const {
          std::equal(whitening_->p.begin(), whitening_->p.end(), p);
 }
 
-std::vector<ModelResiduals::Block> ModelResiduals::kept_blocks() const {
-  std::vector<Block> blocks;
-  for (const std::size_t k : slips_) {
-    Block block(whitening_->residuals[k].size(), 2);
+void ModelResiduals::take_kept_blocks(std::vector<Block>& blocks) const {
+  blocks.resize(slips_.size());
+  Block block;
+  for (std::size_t i = 0; i < slips_.size(); ++i) {
+    const std::size_t k = slips_[i];
+    block.resize(whitening_->residuals[k].size(), 2);
     block << whitening_->residuals[k], whitening_->g[k];
     if (whitening_->slow > 0) whiten_level(observations_.slips[k], block);
-    blocks.push_back(triangular_factor(block));
+    triangular_factor(block, blocks[i]);
   }
-  return blocks;
+}
+
+Eigen::VectorXd ModelResiduals::level_column(const Observations::SlipObservation& range) const {
+  Eigen::VectorXd out(friction_rows(range));
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    out(static_cast<Eigen::Index>(i - range.begin)) = observations_.root_weight[i];
+  }
+  if (range.from_stick) out(out.size() - 1) = range.direction * range.break_away_root_weight;  // of |friction|
+  return out;
+}
+
+void ModelResiduals::whiten_level(const Observations::SlipObservation& range, Block& block) const {
+  const Eigen::VectorXd level = level_column(range);
+  const double norm = level.squaredNorm();
+  const double part = 1 - 1 / std::sqrt(1 + whitening_->slow * norm);
+  const Eigen::RowVectorXd mean = level.transpose() * block.topRows(level.size()) / norm;
+  block.topRows(level.size()) -= part * level * mean;
+}
+
+Eigen::MatrixXd ModelResiduals::corrections(const std::vector<Block>& blocks) const {
+  if (whitening_ == nullptr || whitening_->part <= 0 || blocks.empty()) return {};
+  const Eigen::Index columns = blocks[0].cols() - 1;
+  Eigen::MatrixXd out(columns, static_cast<Eigen::Index>(blocks.size()));
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(columns);
+  double weights = 0;
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    auto own = out.col(static_cast<Eigen::Index>(k));
+    const double* g = blocks[k].col(columns).data();
+    const double norm = dot(g, g, blocks[k].rows()), weight = whitening_->weight[slips_[k]];
+    for (Eigen::Index j = 0; j < columns; ++j) {
+      own(j) = norm > 0 ? dot(g, blocks[k].col(j).data(), blocks[k].rows()) / norm : 0;
+    }
+    mean += weight * own;
+    weights += weight;
+  }
+  if (weights > 0) mean /= weights;
+  out = whitening_->part * (mean.replicate(1, out.cols()) - out);
+  return out;
+}
+
+void ModelResiduals::add_to(Block& block, Eigen::Index slip, const Eigen::MatrixXd& added) {
+  for (Eigen::Index j = 0; j < added.rows(); ++j) block.col(j) += added(j, slip) * block.col(added.rows());
+}
+
+std::vector<double> ModelResiduals::squares_of(const std::vector<Eigen::MatrixXd>& blocks) const {
+  const Eigen::MatrixXd added = corrections(blocks);
+  std::vector<double> out;
+  out.reserve(blocks.size());
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const double of_g = added.cols() > 0 ? added(0, static_cast<Eigen::Index>(k)) : 0;
+    out.push_back((blocks[k].col(0) + of_g * blocks[k].col(1)).squaredNorm());
+  }
+  return out;
 }
 
 }  // namespace tribofit

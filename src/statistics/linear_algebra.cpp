@@ -127,6 +127,12 @@ double dot(const double* x, const double* y, Eigen::Index n) {
 }
 
 MatrixXd triangular_factor(MatrixXd& matrix) {
+  MatrixXd factor;
+  triangular_factor(matrix, factor);
+  return factor;
+}
+
+void triangular_factor(MatrixXd& matrix, MatrixXd& factor) {
   const Eigen::Index rows = matrix.rows(), columns = matrix.cols(), kept = std::min(rows, columns);
   for (Eigen::Index k = 0; k < kept; ++k) {
     double* v = &matrix(k, k);
@@ -135,18 +141,17 @@ MatrixXd triangular_factor(MatrixXd& matrix) {
     if (!(below > std::numeric_limits<double>::min())) continue;
     const double length = std::copysign(std::sqrt(head * head + below), head);
     v[0] = head + length;
-    const double factor = 1 / (length * v[0]);  // 2/v'v
+    const double twice = 1 / (length * v[0]);  // 2/v'v
     for (Eigen::Index j = k + 1; j < columns; ++j) {
       double* column = &matrix(k, j);
-      subtract(factor * dot(v, column, n), v, column, n);
+      subtract(twice * dot(v, column, n), v, column, n);
     }
     v[0] = -length;
   }
-  MatrixXd out = MatrixXd::Zero(columns, columns);
+  factor.setZero(columns, columns);
   for (Eigen::Index j = 0; j < columns; ++j) {
-    for (Eigen::Index i = 0; i <= std::min(j, kept - 1); ++i) out(i, j) = matrix(i, j);
+    for (Eigen::Index i = 0; i <= std::min(j, kept - 1); ++i) factor(i, j) = matrix(i, j);
   }
-  return out;
 }
 
 }  // namespace tribofit
