@@ -10,6 +10,7 @@
 #include "batch.hpp"
 #include "console.hpp"
 #include "inputs.hpp"
+#include "memory.hpp"
 #include "options.hpp"
 #include "results.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -138,6 +139,7 @@ ExitStatus run_identify(const Settings& s, const std::vector<std::string>& argum
   const std::vector<Input> inputs = find_runs(s.traces, options.read, find).runs;
   if (inputs.size() == 1 && !inputs.front().problem.empty()) throw InputError(inputs.front().problem, "");
   check_usage(s, inputs);
+  share_memory();
   return run_all(s, inputs, options, arguments);
 }
 

@@ -20,3 +20,9 @@ void keep_memory() {
   ::mallopt(M_TRIM_THRESHOLD, 64 << 20);
 #endif
 }
+
+void share_memory() {
+#ifdef __GLIBC__
+  ::mallopt(M_ARENA_MAX, 1);
+#endif
+}

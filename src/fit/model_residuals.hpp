@@ -151,8 +151,9 @@ class ModelResiduals final : public Residuals {
     own_levels_ = own_levels && options_.loss == Loss::squares;
   }
   /// The whitening that the residuals at p call for; none where no slip begins with a break-away.
-  /// keep_residuals: they are kept in it.
+  /// keep_residuals: they are kept in it. before: one that is no longer needed, whose memory is used again.
   Whitening whitening_at(const double* p, bool keep_residuals = false) const;
+  Whitening whitening_at(const double* p, bool keep_residuals, Whitening before) const;
 
  private:
   /// Columns J (when asked for), r, g of one slip; compressed to as many rows as columns at the most.
@@ -209,9 +210,9 @@ class ModelResiduals final : public Residuals {
   template <class Work>
   bool in_parts(Work&& work) const;
   /// What noise that raises all of a slip alike does to its rows of friction.
-  Eigen::VectorXd level_column(const Observations::SlipObservation& range) const;
+  void find_level_column(const Observations::SlipObservation& range, Eigen::VectorXd& level) const;
   /// Takes out of the rows of a slip what that noise is expected to do.
-  void whiten_level(const Observations::SlipObservation& range, Block& block) const;
+  void whiten_level(const Observations::SlipObservation& range, Eigen::VectorXd& level, Block& block) const;
   /// c (mean over slips of the regression of the columns on g, less that of the slip), to be added as g times it: one
   /// column for each slip, a row for each of its columns but g. No columns where there is nothing to add.
   Eigen::MatrixXd corrections(const std::vector<Block>& blocks) const;

@@ -154,6 +154,7 @@ double mean_of(const std::vector<double>& x, double otherwise) {
 /// a value.
 void add_velocity_variance(const Motion& motion, const Reducer& reduce, Observations& out) {
   std::size_t value = 0;
+  out.velocity_variance.reserve(out.velocity.size());
   reduce.each([&](std::size_t begin, std::size_t end) {
     const double mean = out.velocity[value++];
     double squares = 0;
@@ -333,6 +334,8 @@ Observations observe_motion(const Motion& motion, const Segmentation& segmentati
   out.time = reduce.means(motion.time);
   out.velocity = reduce.means(motion.relative_velocity);
   out.friction = reduce.means(motion.friction);
+  out.weight.reserve(values);
+  out.root_weight.reserve(values);
   reduce.each([&](std::size_t begin, std::size_t end) {
     std::size_t good = 0;
     for (std::size_t i = begin; i < end; ++i) good += motion.has_fault(i, SampleFault::any) ? 0U : 1U;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "limits.hpp"
 #include "statistics/linear_algebra.hpp"
@@ -90,7 +91,7 @@ bool refine(FitContext& context, const std::optional<ChangePoint>& change, Bound
   const std::vector<double> begin = p;
   double last = std::numeric_limits<double>::infinity();
   for (int step = 0; step < kMostRefiningSteps; ++step) {
-    context.whitening = plain.whitening_at(p.data(), change.has_value());
+    context.whitening = plain.whitening_at(p.data(), change.has_value(), std::move(context.whitening));
     if (change) find_change(context, *change, held, p);
     const std::optional<Linearisation> here = linearise(context.residuals(all), p);
     if (!here) break;
@@ -108,7 +109,7 @@ ModelResiduals refine_look(FitContext& context, const std::optional<ChangePoint>
                            std::vector<double>& p) {
   const std::vector<std::size_t> all = all_slips(context.observations);
   const ModelResiduals plain(context.model, context.observations, all, context.evaluation);
-  context.whitening = plain.whitening_at(p.data(), change.has_value());
+  context.whitening = plain.whitening_at(p.data(), change.has_value(), std::move(context.whitening));
   if (change) find_change(context, *change, held, p);
   ModelResiduals residuals = context.residuals(all);
   const std::optional<Linearisation> here = linearise(residuals, p);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <utility>
 #include <vector>
 
 #include "limits.hpp"
@@ -116,6 +117,11 @@ void whiten_break_away(const std::vector<Products>& slips, const Observations& o
 }  // namespace
 
 ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p, bool keep_residuals) const {
+  return whitening_at(p, keep_residuals, {});
+}
+
+ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p, bool keep_residuals, Whitening before) const {
+  if (slips_.size() < observations_.slips.size()) before = {};  // nothing of the others stays
   Whitening out;
   out.g.resize(observations_.slips.size());
   out.level.assign(observations_.slips.size(), 0.0);
@@ -123,18 +129,22 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p, bool kee
   const bool breaks_away =
       std::any_of(slips_.begin(), slips_.end(), [this](std::size_t s) { return observations_.slips[s].from_stick; });
   if (!breaks_away) return out;
+  if (before.g.size() == out.g.size()) out.g = std::move(before.g);
   std::vector<Products> all(slips_.size());
-  std::vector<Eigen::VectorXd> kept(keep_residuals ? observations_.slips.size() : 0);
+  std::vector<Eigen::VectorXd> kept = std::move(before.residuals);
+  kept.resize(keep_residuals ? observations_.slips.size() : 0);
   const bool finite = in_parts([&](const ModelResiduals& own, std::size_t begin, std::size_t end) {
     Workspace workspace;
     Block block;
+    Eigen::VectorXd u;
     for (std::size_t k = begin; k < end; ++k) {
       if (!own.fill(k, p, 1, workspace, block, true)) return false;
       const auto& range = observations_.slips[slips_[k]];
       const Eigen::Index rows = friction_rows(range);
       Eigen::VectorXd& g = out.g[slips_[k]];
       g = block.col(0).head(rows);
-      const Eigen::VectorXd u = level_column(range), r = block.col(1).head(rows);
+      const auto r = block.col(1).head(rows);
+      find_level_column(range, u);
       all[k] = {
           slips_[k],      static_cast<double>(rows), g.squaredNorm(), g.dot(u), u.squaredNorm(), g.dot(r), u.dot(r),
           r.squaredNorm()};
@@ -160,26 +170,27 @@ bool ModelResiduals::was_whitened_at(const double* p) const {
 void ModelResiduals::take_kept_blocks(std::vector<Block>& blocks) const {
   blocks.resize(slips_.size());
   Block block;
+  Eigen::VectorXd level;
   for (std::size_t i = 0; i < slips_.size(); ++i) {
     const std::size_t k = slips_[i];
     block.resize(whitening_->residuals[k].size(), 2);
     block << whitening_->residuals[k], whitening_->g[k];
-    if (whitening_->slow > 0) whiten_level(observations_.slips[k], block);
+    if (whitening_->slow > 0) whiten_level(observations_.slips[k], level, block);
     triangular_factor(block, blocks[i]);
   }
 }
 
-Eigen::VectorXd ModelResiduals::level_column(const Observations::SlipObservation& range) const {
-  Eigen::VectorXd out(friction_rows(range));
+void ModelResiduals::find_level_column(const Observations::SlipObservation& range, Eigen::VectorXd& level) const {
+  level.resize(friction_rows(range));
   for (std::size_t i = range.begin; i < range.end; ++i) {
-    out(static_cast<Eigen::Index>(i - range.begin)) = observations_.root_weight[i];
+    level(static_cast<Eigen::Index>(i - range.begin)) = observations_.root_weight[i];
   }
-  if (range.from_stick) out(out.size() - 1) = range.direction * range.break_away_root_weight;  // of |friction|
-  return out;
+  if (range.from_stick) level(level.size() - 1) = range.direction * range.break_away_root_weight;  // of |friction|
 }
 
-void ModelResiduals::whiten_level(const Observations::SlipObservation& range, Block& block) const {
-  const Eigen::VectorXd level = level_column(range);
+void ModelResiduals::whiten_level(const Observations::SlipObservation& range, Eigen::VectorXd& level,
+                                  Block& block) const {
+  find_level_column(range, level);
   const double norm = level.squaredNorm();
   const double part = 1 - 1 / std::sqrt(1 + whitening_->slow * norm);
   const Eigen::RowVectorXd mean = level.transpose() * block.topRows(level.size()) / norm;

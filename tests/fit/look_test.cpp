@@ -131,6 +131,27 @@ TEST(SquaresOfSlips, AreTheSameWhereTheWhiteningKeptResiduals) {
   }
 }
 
+/// Memory of a whitening before changes nothing, even where fewer slips are whitened than it had.
+TEST(Whitening, IsTheSameInMemoryOfAnother) {
+  const LagOffItsTruth lag;
+  const auto& [model, record, observations, p] = lag;
+  std::vector<double> elsewhere = p;
+  elsewhere[1] *= 1.1;
+  std::vector<std::size_t> few = all_slips(observations);
+  few.resize(few.size() / 2);
+  for (const auto& slips : {all_slips(observations), few}) {
+    const ModelResiduals all(model, observations, all_slips(observations)), residuals(model, observations, slips);
+    const ModelResiduals::Whitening truth = residuals.whitening_at(p.data(), true);
+    const ModelResiduals::Whitening found =
+        residuals.whitening_at(p.data(), true, all.whitening_at(elsewhere.data(), true));
+    EXPECT_EQ(found.g, truth.g);
+    EXPECT_EQ(found.residuals, truth.residuals);
+    EXPECT_EQ(found.level, truth.level);
+    EXPECT_EQ(found.part, truth.part);
+    EXPECT_EQ(found.p, p);
+  }
+}
+
 /// Wherever it begins, the search for a change ends where all slips, evaluated with the change in each gap between two,
 /// leave least.
 TEST(BestChange, IsWhereLeastIsLeftWhereverTheSearchBegins) {
