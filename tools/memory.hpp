@@ -10,6 +10,6 @@ void give_memory_back();
 /// takes a fifth of the time of an answer. To be called before the first thread begins.
 void keep_memory();
 
-/// All threads take their memory from one heap: where they seldom ask for any, as in the fits of a trace, heaps of their
-/// own only cost 2 MB each. To be called before the first thread begins.
+/// All threads take their memory from one heap: where they seldom ask for any, as in fits, a heap for each of them only
+/// costs 2 MB. To be called before the first thread begins.
 void share_memory();

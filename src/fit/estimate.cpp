@@ -154,7 +154,7 @@ void settle(FitContext& context, const std::vector<std::size_t>& slips, const st
   constexpr int kFewestPasses = 3, kMostPasses = 20;
   bool is_settled = false;
   for (int pass = 0; pass < kMostPasses && !is_settled; ++pass) {
-    context.whitening = plain.whitening_at(p.data(), change.has_value(), std::move(context.whitening));
+    context.whiten_at(plain, p, change.has_value());
     if (change) find_change(context, *change, held, p);
     if (pass + 1 == kMostPasses) break;
     std::vector<double> next = context.solve(slips, p, search, held).p;
@@ -165,7 +165,7 @@ void settle(FitContext& context, const std::vector<std::size_t>& slips, const st
     is_settled = pass + 2 >= kFewestPasses && are_alike(p, next);
     p = std::move(next);
   }
-  if (is_settled) context.whitening = plain.whitening_at(p.data(), false, std::move(context.whitening));
+  if (is_settled) context.whiten_at(plain, p);
 }
 
 /// The search on fewer values, or on some of the slips: where passes from the best of several starts end.

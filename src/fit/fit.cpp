@@ -125,11 +125,11 @@ double noise_beside(const Fit& fit, std::size_t parameters) {
 void fill_floor(const FitContext& context, const std::vector<double>& p, const SampleErrors& errors, Fit& fit) {
   Floor floor = mean_floor(context.observations.noise);
   const double count = std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0);
-  ModelResiduals::Whitening plain;
-  if (!context.whitening.any()) plain = context.residuals(all_slips(context.observations)).whitening_at(p.data());
+  ModelResiduals::Whitening here;
+  if (!context.whitening.any()) here = context.residuals(all_slips(context.observations)).whitening_at(p.data());
+  const ModelResiduals::Whitening& whitening = context.whitening.any() ? context.whitening : here;
   double sensitivity = 0;  // sum of squares of d model/d mu_s over the samples
-  for (const Eigen::VectorXd& g : (context.whitening.any() ? context.whitening : plain).g)
-    sensitivity += g.squaredNorm();
+  for (const Eigen::VectorXd& g : whitening.g) sensitivity += g.squaredNorm();
   const double scatter = std::pow(floor.scatter, 2) * sensitivity / std::max(1.0, count);
   const bool points = are_points(context.records);
   if (points) floor.noise = std::min(floor.noise, noise_beside(fit, p.size()));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "model_residuals.hpp"
@@ -24,6 +25,10 @@ struct FitContext {
 
   bool by_extremes() const { return options.protocol == Protocol::published; }
   bool is_look() const { return options.starts == 0; }
+  /// Sets the whitening to what the residuals at p call for; `plain` are those of all slips, not whitened.
+  void whiten_at(const ModelResiduals& plain, const std::vector<double>& p, bool keep_residuals = false) {
+    whitening = plain.whitening_at(p.data(), keep_residuals, std::exchange(whitening, {}));
+  }
   ModelResiduals residuals(const std::vector<std::size_t>& slips, bool own_levels = true) const {
     ModelResiduals out(model, observations, slips, evaluation);
     if (whitening.any()) out.whiten(whitening, own_levels);

@@ -198,24 +198,24 @@ bool ModelResiduals::compress(std::size_t begin, std::size_t end, const double* 
 }
 
 bool ModelResiduals::was_evaluated(const double* p) const {
-  return kept_.last.p.size() == parameter_count() && std::equal(kept_.last.p.begin(), kept_.last.p.end(), p);
+  return cache_.last.p.size() == parameter_count() && std::equal(cache_.last.p.begin(), cache_.last.p.end(), p);
 }
 
 const std::vector<ModelResiduals::Block>* ModelResiduals::white_blocks(const double* p) const {
   const std::size_t n = parameter_count();
-  if (was_evaluated(p)) return &kept_.last.blocks;
-  std::vector<Block> blocks = std::exchange(kept_.last, {}).blocks;
+  if (was_evaluated(p)) return &cache_.last.blocks;
+  std::vector<Block> blocks = std::exchange(cache_.last, {}).blocks;
   if (!compressed(p, true, blocks)) return nullptr;
   Eigen::MatrixXd added = corrections(blocks);
   for (Eigen::Index k = 0; k < added.cols(); ++k) add_to(blocks[static_cast<std::size_t>(k)], k, added);
-  kept_.last = {{p, p + n}, std::move(blocks), std::move(added)};
-  return &kept_.last.blocks;
+  cache_.last = {{p, p + n}, std::move(blocks), std::move(added)};
+  return &cache_.last.blocks;
 }
 
 bool ModelResiduals::evaluate(const double* p, double* residual, double* jacobian) const {
   if (jacobian == nullptr) {
-    if (!find_residual_blocks(p, kept_.without_slopes)) return false;
-    const std::vector<double> squares = squares_of(kept_.without_slopes);
+    if (!find_residual_blocks(p, cache_.without_slopes)) return false;
+    const std::vector<double> squares = squares_of(cache_.without_slopes);
     std::fill_n(residual, count(), 0.0);
     for (std::size_t k = 0; k < squares.size(); ++k) residual[k * rows_per_slip()] = std::sqrt(squares[k]);
     return true;
@@ -240,7 +240,7 @@ std::vector<Eigen::MatrixXd> ModelResiduals::residual_blocks(const double* p) co
 
 bool ModelResiduals::find_residual_blocks(const double* p, std::vector<Block>& blocks) const {
   if (!was_whitened_at(p)) return compressed(p, false, blocks);
-  take_kept_blocks(blocks);
+  compress_residuals_of_whitening(blocks);
   return true;
 }
 
@@ -253,7 +253,7 @@ std::vector<ModelResiduals::Normal> ModelResiduals::normal_equations(const doubl
   const auto n = static_cast<Eigen::Index>(parameter_count());
   const std::vector<Block>* blocks = white_blocks(p);
   if (blocks == nullptr) return {};
-  const Eigen::MatrixXd& added = kept_.last.added;
+  const Eigen::MatrixXd& added = cache_.last.added;
   // M'M J of a slip is (I - c P_g) of its white rows, and through the mean of all slips g' (white rows) summed over
   // them.
   std::vector<Normal> out;
@@ -296,8 +296,8 @@ std::vector<Eigen::MatrixXd> ModelResiduals::white_rows(const double* p, const F
   const auto added = corrections(blocks);
   std::vector<Eigen::MatrixXd> out;
   for (std::size_t k = 0; k < blocks.size(); ++k) {
+    if (added.cols() > 0) add_to(blocks[k], static_cast<Eigen::Index>(k), added);
     out.push_back(blocks[k].leftCols(columns));
-    if (added.cols() > 0) out.back() += blocks[k].col(columns) * added.col(static_cast<Eigen::Index>(k)).transpose();
   }
   return out;
 }
@@ -322,9 +322,9 @@ double ModelResiduals::squares_with_scatter(const double* p) const {
   const auto n = static_cast<Eigen::Index>(parameter_count());
   double sum = 0;
   if (was_evaluated(p)) {
-    for (std::size_t k = 0; k < kept_.last.blocks.size(); ++k) {
-      const auto r = kept_.last.blocks[k].col(n), g = kept_.last.blocks[k].col(n + 1);
-      const double added = kept_.last.added.cols() > 0 ? kept_.last.added(n, static_cast<Eigen::Index>(k)) : 0;
+    for (std::size_t k = 0; k < cache_.last.blocks.size(); ++k) {
+      const auto r = cache_.last.blocks[k].col(n), g = cache_.last.blocks[k].col(n + 1);
+      const double added = cache_.last.added.cols() > 0 ? cache_.last.added(n, static_cast<Eigen::Index>(k)) : 0;
       sum += (r - added * g).squaredNorm();
     }
     return sum;

@@ -45,6 +45,8 @@ std::vector<std::size_t> all_slips(const Observations& observations);
 /// at its own level mu_s + delta_i, with delta_i as predicted where the whitening was made (Lindstrom and Bates'
 /// linearisation of a mixed model, Biometrics 46 (1990) 673, doi:10.2307/2532087) and taken back along g_i; without
 /// that whitening and parameters settle slowly, or elsewhere.
+///
+/// Not for several threads at once, though its functions are const: each takes a copy.
 class ModelResiduals final : public Residuals {
  public:
   struct Options {
@@ -139,14 +141,14 @@ class ModelResiduals final : public Residuals {
 
   /// Takes the squares of stick for this part of what the noise of v_r makes of them.
   void weaken_stick(double part) {
-    kept_.last.p.clear();
+    cache_.last.p.clear();
     for (Eigen::MatrixXd& weights : weights_) weights *= std::sqrt(part);
   }
 
   /// Whitens; `whitening` must outlive this object. own_levels: evaluate each slip at its own level; for the model that
   /// the whitening was made with.
   void whiten(const Whitening& whitening, bool own_levels = false) {
-    kept_.last.p.clear();
+    cache_.last.p.clear();
     whitening_ = &whitening;
     own_levels_ = own_levels && options_.loss == Loss::squares;
   }
@@ -198,9 +200,10 @@ class ModelResiduals final : public Residuals {
   /// Blocks with the Jacobian, whitened; nullptr where the model is not finite. A search often asks once more for
   /// where another one ended.
   const std::vector<Block>* white_blocks(const double* p) const;
-  /// As residual_blocks(p), into memory that is there; false where the model is not finite.
+  /// As residual_blocks(p), into `blocks`, whose memory is used again; false where the model is not finite.
   bool find_residual_blocks(const double* p, std::vector<Block>& blocks) const;
-  void take_kept_blocks(std::vector<Block>& blocks) const;
+  /// The same from the residuals that the whitening kept.
+  void compress_residuals_of_whitening(std::vector<Block>& blocks) const;
   /// As compressed(), of the slips [begin, end).
   bool compress(std::size_t begin, std::size_t end, const double* p, bool with_jacobian, std::vector<Block>& blocks,
                 const FurtherColumns& further) const;
@@ -211,12 +214,12 @@ class ModelResiduals final : public Residuals {
   bool in_parts(Work&& work) const;
   /// What noise that raises all of a slip alike does to its rows of friction.
   void find_level_column(const Observations::SlipObservation& range, Eigen::VectorXd& level) const;
-  /// Takes out of the rows of a slip what that noise is expected to do.
+  /// Takes out of the rows of a slip what that noise is expected to do. level: memory for its column.
   void whiten_level(const Observations::SlipObservation& range, Eigen::VectorXd& level, Block& block) const;
   /// c (mean over slips of the regression of the columns on g, less that of the slip), to be added as g times it: one
   /// column for each slip, a row for each of its columns but g. No columns where there is nothing to add.
   Eigen::MatrixXd corrections(const std::vector<Block>& blocks) const;
-  /// Adds what is to be added to a slip.
+  /// Adds g times what corrections() gave for this slip to the other columns of its block.
   static void add_to(Block& block, Eigen::Index slip, const Eigen::MatrixXd& added);
 
   FrictionModel model_;  // a copy: formulas must not be shared between threads
@@ -233,15 +236,15 @@ class ModelResiduals final : public Residuals {
     Eigen::MatrixXd added;  ///< see corrections(): what whitened them
   };
   /// From one evaluation to the next; copies begin without it.
-  struct Kept {
+  struct Cache {
     Evaluated last;                     ///< see white_blocks()
     std::vector<Block> without_slopes;  ///< memory for an evaluation without the Jacobian
 
-    Kept() = default;
-    Kept(const Kept&) {}
-    Kept(Kept&&) = default;
+    Cache() = default;
+    Cache(const Cache&) {}
+    Cache(Cache&&) = default;
   };
-  mutable Kept kept_;
+  mutable Cache cache_;
 };
 
 template <class Work>

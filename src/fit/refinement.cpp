@@ -91,7 +91,7 @@ bool refine(FitContext& context, const std::optional<ChangePoint>& change, Bound
   const std::vector<double> begin = p;
   double last = std::numeric_limits<double>::infinity();
   for (int step = 0; step < kMostRefiningSteps; ++step) {
-    context.whitening = plain.whitening_at(p.data(), change.has_value(), std::move(context.whitening));
+    context.whiten_at(plain, p, change.has_value());
     if (change) find_change(context, *change, held, p);
     const std::optional<Linearisation> here = linearise(context.residuals(all), p);
     if (!here) break;
@@ -109,7 +109,7 @@ ModelResiduals refine_look(FitContext& context, const std::optional<ChangePoint>
                            std::vector<double>& p) {
   const std::vector<std::size_t> all = all_slips(context.observations);
   const ModelResiduals plain(context.model, context.observations, all, context.evaluation);
-  context.whitening = plain.whitening_at(p.data(), change.has_value(), std::move(context.whitening));
+  context.whiten_at(plain, p, change.has_value());
   if (change) find_change(context, *change, held, p);
   ModelResiduals residuals = context.residuals(all);
   const std::optional<Linearisation> here = linearise(residuals, p);
@@ -120,7 +120,7 @@ ModelResiduals refine_look(FitContext& context, const std::optional<ChangePoint>
   const auto leads_astray = [&](const ModelResiduals& to, const ModelResiduals& from) {
     return !(to.squares_with_scatter(next.data()) <= kRiseOfLook * from.squares_with_scatter(p.data()));
   };
-  ModelResiduals there = residuals;  // each holds its Jacobian, of which one is needed next
+  ModelResiduals there = residuals;  // holds the Jacobian at `next`, which is needed then if the step is taken
   const ModelResiduals few = residuals.of_slips(few_of(all));
   if (!leads_astray(few, few)) linearise(there, next);  // most likely it is that one
   if (leads_astray(there, residuals)) return residuals;

@@ -85,8 +85,7 @@ double squares_of(const Residuals& residuals, const std::vector<double>& p) {
 void weigh(const FrictionModel& model, Member& member) {
   constexpr double kLeast = 1e-9;  // of the largest friction: rounding
   const Observations& observations = *member.record.observations;
-  member.whitening = member.residuals.whitening_at(member.record.values.data());
-  member.residuals.whiten(member.whitening, true);
+  member.whiten_at(member.record.values);
   double rows = 0;
   for (const auto& slip : observations.slips) rows += static_cast<double>(slip.end - slip.begin) + slip.from_stick;
   const double freedom = std::max(1.0, rows - static_cast<double>(model.parameters().size()));
@@ -170,8 +169,7 @@ std::vector<double> best_of_starts(const Problem& problem, const std::vector<std
 bool whiten_at(Problem& problem, const std::vector<double>& values) {
   bool any = false;
   for (Member& member : problem.members) {
-    const std::vector<double> p = problem.of_member(member, values);
-    member.whitening = member.residuals.whitening_at(p.data());
+    member.whiten_at(problem.of_member(member, values));
     any |= member.whitening.any();
   }
   return any;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model_residuals.hpp"
@@ -75,6 +76,11 @@ struct Member {
       : record(given), residuals(model, *given.observations, all_slips(*given.observations)) {}
   Member(const Member&) = delete;
   Member& operator=(const Member&) = delete;
+
+  void whiten_at(const std::vector<double>& p) {
+    whitening = residuals.whitening_at(p.data(), false, std::exchange(whitening, {}));
+    residuals.whiten(whitening, true);  // which forgets what was whitened otherwise
+  }
 
   const SharingRecord& record;
   ModelResiduals residuals;

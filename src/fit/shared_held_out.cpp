@@ -151,8 +151,7 @@ Fit held_out_alone(const Problem& problem) {
       alone.upper.push_back(problem.upper[value]);
     }
     own.weight = member.weight;
-    own.whitening = own.residuals.whitening_at(own.record.values.data());
-    own.residuals.whiten(own.whitening, true);
+    own.whiten_at(own.record.values);
     parts.push_back(part_at(alone, own, own.record.values));
   }
   return HeldOut(alone, parts, common_of(alone, parts, {})).run();

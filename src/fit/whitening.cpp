@@ -152,7 +152,10 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p, bool kee
     }
     return true;
   });
-  if (!finite) return out;
+  if (!finite) {
+    out.g.assign(observations_.slips.size(), {});
+    return out;
+  }
   if (keep_residuals) out.p.assign(p, p + parameter_count()), out.residuals = std::move(kept);
   std::vector<Products> slips;
   std::copy_if(all.begin(), all.end(), std::back_inserter(slips), [](const Products& slip) { return slip.gg > 0; });
@@ -167,7 +170,7 @@ bool ModelResiduals::was_whitened_at(const double* p) const {
          std::equal(whitening_->p.begin(), whitening_->p.end(), p);
 }
 
-void ModelResiduals::take_kept_blocks(std::vector<Block>& blocks) const {
+void ModelResiduals::compress_residuals_of_whitening(std::vector<Block>& blocks) const {
   blocks.resize(slips_.size());
   Block block;
   Eigen::VectorXd level;
@@ -227,8 +230,8 @@ std::vector<double> ModelResiduals::squares_of(const std::vector<Eigen::MatrixXd
   std::vector<double> out;
   out.reserve(blocks.size());
   for (std::size_t k = 0; k < blocks.size(); ++k) {
-    const double of_g = added.cols() > 0 ? added(0, static_cast<Eigen::Index>(k)) : 0;
-    out.push_back((blocks[k].col(0) + of_g * blocks[k].col(1)).squaredNorm());
+    const auto r = blocks[k].col(0), g = blocks[k].col(1);
+    out.push_back(added.cols() > 0 ? (r + added(0, static_cast<Eigen::Index>(k)) * g).squaredNorm() : r.squaredNorm());
   }
   return out;
 }

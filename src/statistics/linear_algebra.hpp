@@ -66,7 +66,7 @@ double dot(const double* x, const double* y, Eigen::Index n);
 /// R of the QR of a matrix, n x n, with zero rows below where it has fewer rows than columns: R'R = A'A. The matrix is
 /// overwritten. Made for few columns, where Householder's reflections column by column take a third of Eigen's time.
 Eigen::MatrixXd triangular_factor(Eigen::MatrixXd& matrix);
-/// The same into `factor`: a loop over slips that has its memory already asks for none.
+/// The same into `factor`, another matrix: a loop over many asks for its memory once.
 void triangular_factor(Eigen::MatrixXd& matrix, Eigen::MatrixXd& factor);
 
 }  // namespace tribofit

@@ -131,7 +131,14 @@ TEST(SquaresOfSlips, AreTheSameWhereTheWhiteningKeptResiduals) {
   }
 }
 
-/// Memory of a whitening before changes nothing, even where fewer slips are whitened than it had.
+/// Sizes and elements: Eigen compares no sizes.
+std::vector<std::vector<double>> numbers_of(const std::vector<Eigen::VectorXd>& vectors) {
+  std::vector<std::vector<double>> out;
+  for (const Eigen::VectorXd& x : vectors) out.emplace_back(x.begin(), x.end());
+  return out;
+}
+
+/// Memory of a whitening before changes nothing, even where fewer slips are whitened than it had, or none can be.
 TEST(Whitening, IsTheSameInMemoryOfAnother) {
   const LagOffItsTruth lag;
   const auto& [model, record, observations, p] = lag;
@@ -141,14 +148,26 @@ TEST(Whitening, IsTheSameInMemoryOfAnother) {
   few.resize(few.size() / 2);
   for (const auto& slips : {all_slips(observations), few}) {
     const ModelResiduals all(model, observations, all_slips(observations)), residuals(model, observations, slips);
-    const ModelResiduals::Whitening truth = residuals.whitening_at(p.data(), true);
-    const ModelResiduals::Whitening found =
-        residuals.whitening_at(p.data(), true, all.whitening_at(elsewhere.data(), true));
-    EXPECT_EQ(found.g, truth.g);
-    EXPECT_EQ(found.residuals, truth.residuals);
-    EXPECT_EQ(found.level, truth.level);
-    EXPECT_EQ(found.part, truth.part);
-    EXPECT_EQ(found.p, p);
+    for (const bool keep_residuals : {true, false}) {
+      const ModelResiduals::Whitening truth = residuals.whitening_at(p.data(), keep_residuals);
+      const ModelResiduals::Whitening found =
+          residuals.whitening_at(p.data(), keep_residuals, all.whitening_at(elsewhere.data(), true));
+      ASSERT_GT(truth.part, 0);
+      EXPECT_EQ(numbers_of(found.g), numbers_of(truth.g));
+      EXPECT_EQ(numbers_of(found.residuals), numbers_of(truth.residuals));
+      EXPECT_EQ(found.p, truth.p);
+      EXPECT_EQ(found.part, truth.part);
+      EXPECT_EQ(found.level, truth.level);
+      EXPECT_EQ(found.weight, truth.weight);
+      EXPECT_EQ(found.log_spread, truth.log_spread);
+    }
+    elsewhere[1] = std::numeric_limits<double>::quiet_NaN();
+    const ModelResiduals::Whitening none =
+        residuals.whitening_at(elsewhere.data(), true, all.whitening_at(p.data(), true));
+    EXPECT_FALSE(none.any());
+    EXPECT_TRUE(none.p.empty() && none.residuals.empty());
+    for (const Eigen::VectorXd& g : none.g) EXPECT_EQ(g.size(), 0);
+    elsewhere[1] = 1.1 * p[1];
   }
 }
 

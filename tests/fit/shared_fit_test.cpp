@@ -69,6 +69,29 @@ TEST(SharedFit, ARecordThatSharesNothingKeepsItsFit) {
   EXPECT_NEAR(together.held_out_rmse_together, together.held_out_rmse_alone, 1e-4 * together.held_out_rmse_alone);
 }
 
+/// A whitening anew forgets what was evaluated with the one before it.
+TEST(SharedFit, AMemberIsWhitenedAnew) {
+  Campaign campaign;
+  campaign.add(kTruth, 1);
+  const SharingRecord record{&campaign.observations[0], false, campaign.fits[0].values(), {kOwn, kOwn, kOwn}};
+  std::vector<double> elsewhere = record.values;
+  elsewhere[1] *= 0.9;
+  sharing::Member member(campaign.model, record), fresh(campaign.model, record);
+  const auto rows = [&](const sharing::Member& of) {
+    std::vector<double> residual(of.residuals.count()), jacobian(residual.size() * record.values.size());
+    EXPECT_TRUE(of.residuals.evaluate(record.values.data(), residual.data(), jacobian.data()));
+    residual.insert(residual.end(), jacobian.begin(), jacobian.end());
+    return residual;
+  };
+  member.whiten_at(elsewhere);
+  const std::vector<double> before = rows(member);
+  member.whiten_at(record.values);
+  fresh.whiten_at(record.values);
+  ASSERT_TRUE(fresh.whitening.any());
+  EXPECT_EQ(rows(member), rows(fresh));
+  EXPECT_NE(before, rows(fresh));
+}
+
 TEST(SharedFit, IntervalsCoverAndTheSharingIsRarelyRefused) {
   constexpr int kCampaigns = 60;
   int inside = 0, inside_own = 0, refused = 0;
