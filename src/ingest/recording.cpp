@@ -261,7 +261,9 @@ FileRecord take_rows(RawTable& table, RowsPlan plan, const FileRecord& file, int
 }  // namespace
 
 FileRecord read_recording(const std::string& path, const ReadOptions& options, std::span<const Reader> readers) {
-  return read_recording(read_table(path, readers), path, options);
+  FileRecord run = read_recording(read_table(path, readers), path, options);
+  run.checksum = checksum_of(run, options.threads);
+  return run;
 }
 
 FileRecord read_recording(RawTable table, const std::string& path, const ReadOptions& options) {
@@ -292,7 +294,6 @@ FileRecord read_recording(RawTable table, const std::string& path, const ReadOpt
   run.notes.insert(run.notes.begin(), file.notes.begin(), file.notes.end());
   run.warnings.insert(run.warnings.begin(), file.warnings.begin(), file.warnings.end());
   for (std::size_t i = 1; i < parts.size(); ++i) join_on_one_clock(run, std::move(parts[i]));
-  run.checksum = checksum_of(run, options.threads);
   return run;
 }
 

@@ -65,7 +65,7 @@ struct FileRecord {
 /// Reads one file with the reader that recognises it; its time is made to start at 0 and to increase, its steps are
 /// found (clock.hpp). Channels with rows of their own are brought together on the clock of the file (join.hpp).
 FileRecord read_recording(const std::string& path, const ReadOptions& options, std::span<const Reader> readers);
-/// The same of a table that was read from it.
+/// The same of a table that was read from it, without the checksum.
 FileRecord read_recording(RawTable table, const std::string& path, const ReadOptions& options);
 
 /// Throws the InputError for columns that are missing; says which there are.
