@@ -283,15 +283,17 @@ Look look_at(const Looked& at, double from, double shortest = kKinkRest) {
   if (sharp.squares > kKinkExplained * best.squares) {
     const auto left = [&](double width) { return usual(some, {filter.kind, width}, at.threads).squares; };
     filter.width = golden_section(left, filter.width / kKinkNext, filter.width * kKinkNext, kCuts).at;
-    best = usual(some, filter);
+    best = usual(some, filter, threads);
   }
+  double decay = 0;
+  run_tasks(2, threads, [&](std::size_t k) {
+    k == 0 ? decay = left_by_decay(some) : found.rise = rise_in_stick(velocity, rest, fastest) / fastest;
+  });
   const double tau = filter.spread(), stride = std::max(1.0, std::floor(most / static_cast<double>(kKinkMost)));
   found.tau = tau * stride * step;
   found.at_restick = tau * std::abs(best.slope) / fastest;
-  const double decay = left_by_decay(some);
   const bool is_inside = decay > kKinkInside * best.squares, decays = sharp.squares > kKinkExplained * decay;
   if (!is_inside) found.at_restick = std::max(found.at_restick, from);
-  found.rise = rise_in_stick(velocity, rest, fastest) / fastest;
   const bool creeps = found.rise > kKinkCreeps * std::max(found.at_restick, kKinkSeen);
   // A second order goes beyond rest itself, by as much as it fits.
   const bool returns = filter.kind == Response::second_order ||
