@@ -77,9 +77,9 @@ TEST(SharedFit, AMemberIsWhitenedAnew) {
   std::vector<double> elsewhere = record.values;
   elsewhere[1] *= 0.9;
   sharing::Member member(campaign.model, record), fresh(campaign.model, record);
-  const auto rows = [&](const sharing::Member& of) {
-    std::vector<double> residual(of.residuals.count()), jacobian(residual.size() * record.values.size());
-    EXPECT_TRUE(of.residuals.evaluate(record.values.data(), residual.data(), jacobian.data()));
+  const auto rows = [&](const sharing::Member& whitened) {
+    std::vector<double> residual(whitened.residuals.count()), jacobian(residual.size() * record.values.size());
+    EXPECT_TRUE(whitened.residuals.evaluate(record.values.data(), residual.data(), jacobian.data()));
     residual.insert(residual.end(), jacobian.begin(), jacobian.end());
     return residual;
   };
