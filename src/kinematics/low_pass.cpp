@@ -287,7 +287,11 @@ Look look_at(const Looked& at, double from, double shortest = kKinkRest) {
   }
   double decay = 0;
   run_tasks(2, threads, [&](std::size_t k) {
-    k == 0 ? decay = left_by_decay(some) : found.rise = rise_in_stick(at.velocity, at.rest, at.fastest) / at.fastest;
+    if (k == 0) {
+      decay = left_by_decay(some);
+    } else {
+      found.rise = rise_in_stick(at.velocity, at.rest, at.fastest) / at.fastest;
+    }
   });
   const double tau = filter.spread(), stride = std::max(1.0, std::floor(most / static_cast<double>(kKinkMost)));
   found.tau = tau * stride * step;

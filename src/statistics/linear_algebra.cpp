@@ -141,10 +141,10 @@ void triangular_factor(MatrixXd& matrix, MatrixXd& factor) {
     if (!(below > std::numeric_limits<double>::min())) continue;
     const double length = std::copysign(std::sqrt(head * head + below), head);
     v[0] = head + length;
-    const double twice = 1 / (length * v[0]);  // 2/v'v
+    const double scale = 1 / (length * v[0]);  // 2/v'v
     for (Eigen::Index j = k + 1; j < columns; ++j) {
       double* column = &matrix(k, j);
-      subtract(twice * dot(v, column, n), v, column, n);
+      subtract(scale * dot(v, column, n), v, column, n);
     }
     v[0] = -length;
   }
