@@ -6,11 +6,12 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
-#include <utility>
 
 #include "limits.hpp"
+#include "tribofit/ingest/files_opened.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/text_of_file.hpp"
 
@@ -18,30 +19,23 @@ namespace tribofit {
 
 namespace {
 
-/// A regular file, opened for reading; a pipe without a writer is not waited for.
-class Descriptor {
- public:
-  explicit Descriptor(const std::string& path) : number_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
+std::atomic<std::size_t> opened = 0;
 
-  int number() const { return number_; }
-  int release() { return std::exchange(number_, -1); }
-
- private:
-  int number_;
-};
+/// Opens a file; a pipe without a writer is not waited for.
+std::shared_ptr<const int> open_to_read(const std::string& path) {
+  const int number = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  return {new int(number), [](const int* opened_file) {
+            if (*opened_file >= 0) ::close(*opened_file);
+            delete opened_file;
+          }};
+}
 
 }  // namespace
 
-InputFile::InputFile(const std::string& path, char ends_lines, const std::string& advice)
-    : path_(path), ends_lines_(ends_lines) {
-  Descriptor file(path);
+InputFile::InputFile(const std::string& path, const std::string& advice)
+    : path_(path), descriptor_(open_to_read(path)) {
   struct stat status {};
-  if (file.number() < 0 || ::fstat(file.number(), &status) != 0) {
+  if (*descriptor_ < 0 || ::fstat(*descriptor_, &status) != 0) {
     throw InputError(std::string("cannot be opened: ") + std::strerror(errno),
                      "check the path and the permission to read", {path, 0, ""});
   }
@@ -53,16 +47,22 @@ InputFile::InputFile(const std::string& path, char ends_lines, const std::string
     throw InputError("is not a regular file", advice.empty() ? "write the trace to a file first" : advice,
                      {path, 0, ""});
   }
-  descriptor_ = file.release();
   size_ = static_cast<std::uint64_t>(status.st_size);
+  ++opened;
 }
 
-InputFile::~InputFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
+InputFile InputFile::with_line_end(char byte) const {
+  InputFile same = *this;
+  same.line_end_ = byte;
+  return same;
+}
+
+std::size_t files_opened() noexcept {
+  return opened;
 }
 
 std::string text_of_file(const std::string& path, std::uint64_t most, const std::string& advice) {
-  const InputFile file(path, '\n', advice);
+  const InputFile file(path, advice);
   if (file.size() > most) {
     throw InputError("has " + std::to_string(file.size()) + " bytes, where up to " + std::to_string(most) + " are read",
                      advice, {path, 0, ""});
@@ -76,7 +76,7 @@ std::size_t InputFile::read(std::uint64_t offset, std::span<char> buffer) const 
   std::size_t done = 0;
   while (done < buffer.size()) {
     const ssize_t count =
-        ::pread(descriptor_, buffer.data() + done, buffer.size() - done, static_cast<off_t>(offset + done));
+        ::pread(*descriptor_, buffer.data() + done, buffer.size() - done, static_cast<off_t>(offset + done));
     if (count == 0) break;
     if (count < 0) {
       if (errno == EINTR) continue;
@@ -85,7 +85,7 @@ std::size_t InputFile::read(std::uint64_t offset, std::span<char> buffer) const 
     }
     done += static_cast<std::size_t>(count);
   }
-  if (ends_lines_ != '\n') std::replace(buffer.begin(), buffer.begin() + std::ptrdiff_t(done), ends_lines_, '\n');
+  if (line_end_ != '\n') std::replace(buffer.begin(), buffer.begin() + std::ptrdiff_t(done), line_end_, '\n');
   return done;
 }
 

@@ -2,21 +2,21 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 
 namespace tribofit {
 
-/// A file opened for reading at any offset, by any number of threads.
+/// A file opened for reading at any offset, by any number of threads. Copies share the one opening.
 class InputFile {
  public:
   /// Throws InputError for a missing or unreadable file and for anything but a regular one (a folder, a pipe).
-  /// `ends_lines`: a byte that is read as a line feed (a CR, in files of lines that end in CR alone). `advice`: what to
-  /// name instead, where the file is no trace.
-  explicit InputFile(const std::string& path, char ends_lines = '\n', const std::string& advice = "");
-  ~InputFile();
-  InputFile(const InputFile&) = delete;
-  InputFile& operator=(const InputFile&) = delete;
+  /// `advice`: what to name instead, where the file is no trace.
+  explicit InputFile(const std::string& path, const std::string& advice = "");
+
+  /// The same file with a byte that is read as a line feed (a CR, in files of lines that end in CR alone).
+  InputFile with_line_end(char byte) const;
 
   const std::string& path() const { return path_; }
   std::uint64_t size() const { return size_; }
@@ -32,9 +32,9 @@ class InputFile {
 
  private:
   std::string path_;
-  int descriptor_ = -1;
+  std::shared_ptr<const int> descriptor_;
   std::uint64_t size_ = 0;
-  char ends_lines_;
+  char line_end_ = '\n';
 };
 
 }  // namespace tribofit

@@ -85,7 +85,7 @@ std::shared_ptr<const InputFile> with_lines(std::shared_ptr<const InputFile> fil
   std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(file->size(), kHeadBytes)), '\0');
   head.resize(file->read(0, head));
   const bool lone_cr = head.find('\n') == std::string::npos && head.find('\r') + 1 < head.size();
-  return lone_cr ? std::make_shared<const InputFile>(file->path(), '\r') : file;
+  return lone_cr ? std::make_shared<const InputFile>(file->with_line_end('\r')) : file;
 }
 
 bool recognises_text(std::string_view head) {
