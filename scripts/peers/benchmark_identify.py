@@ -1,5 +1,4 @@
-"""Answers of `identify diagnose` to the benchmark of hidden effects. Records that ANSWERS.jsonl holds already are not
-diagnosed again. usage: benchmark_identify.py IDENTIFY RECORDS ANSWERS.jsonl"""
+"""Answers of `identify diagnose` to the benchmark of hidden effects. usage: benchmark_identify.py RECORDS ANSWERS.jsonl IDENTIFY"""
 
 import json
 import os
@@ -61,17 +60,11 @@ def answer_of(record, told):
 
 
 def main():
-    identify, folder, path = sys.argv[1:]
-    known = set()
-    if os.path.exists(path):
-        with open(path, encoding="utf-8") as file:
-            known = {json.loads(line)["record"] for line in file if line.strip()}
+    folder, path, identify = sys.argv[1:]
     with open(os.path.join(folder, "index.jsonl"), encoding="utf-8") as index:
         entries = [json.loads(line) for line in index]
-    with open(path, "a", encoding="utf-8") as answers:
+    with open(path, "w", encoding="utf-8") as answers:
         for entry in entries:
-            if entry["record"] in known:
-                continue
             run = subprocess.run(command_of(identify, folder, entry), capture_output=True, text=True, check=False)
             answer = {"record": entry["record"], "effects": []}
             if run.returncode in (0, 1) and run.stdout:

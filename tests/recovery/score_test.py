@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks that score-benchmark scores known answers right. usage: score_test.py SCORE"""
+"""Checks that score.py scores known answers right. usage: score_test.py SCORE"""
 import importlib.machinery
 import importlib.util
 import json

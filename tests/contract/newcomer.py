@@ -2,24 +2,20 @@
 """Follows README.md and the texts of `identify help` as a newcomer does: every command in order, each must print what
 stands below it ("[...]" stands for lines that are left out) and end well, or as "(exit status 1)" below it says.
 
-usage: scripts/newcomer [--help-texts] [--own FOLDER]... [IDENTIFY]
+usage: newcomer.py [--help-texts] [IDENTIFY]
        Without IDENTIFY the repository is cloned anew and built by scripts/run, as README.md says. --help-texts: the
-       texts in tools/help as well. --own: then what README.md says of one's own files, on the runs in a folder:
-       `identify columns` of the first, the command that it prints, that of the folder, a manifest, and a diagnosis of
-       all. Exit status 1 and the differences where there are any, or where less than nine tenths of the runs are
-       fitted.
+       texts in tools/help as well. Exit status 1 and the differences where there are any.
 """
 
 import os
 import pathlib
 import re
-import shlex
 import shutil
 import subprocess
 import sys
 import tempfile
 
-REPOSITORY = pathlib.Path(__file__).resolve().parent.parent
+REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 LEFT_OUT = "[...]"
 STATUS = re.compile(r"^\(exit status (\d+)\)$")
 SERVES = "identify explore"
@@ -128,43 +124,10 @@ def follow(name, blocks, folder, environment):
     return wrong
 
 
-def follow_own(given, folder, environment):
-    """The runs of a folder, as a user of one's own files would take them; the number of steps that did not work."""
-    own = folder / given.name
-    shutil.copytree(given, own)
-    first = min((path for path in own.iterdir() if path.is_file() and path.name != "manifest.csv"
-                 and path.suffix not in (".md", ".txt")), default=None)
-    if first is None:
-        print(f"{given.name}: there is no file of a run in it")
-        return 1
-    name = shlex.quote(given.name)
-    look = f"identify columns {shlex.quote(f'{given.name}/{first.name}')}"
-    status, said = run(look, folder, environment)
-    printed = [line.strip() for line in said if line.startswith("  identify ")]
-    if status != 0 or not printed:
-        print(f"{given.name}: {look} ends with {status} and prints no command")
-        return 1
-    options = re.sub(r" --radius \S+", "", " " + printed[-1].removeprefix("identify ").rsplit(" ", 1)[0])
-    wrong = 0
-    for command in (printed[-1], f"identify manifest {name} --out {name}/manifest.csv --force",
-                    f"identify{options} {name} --out {name}-fitted", f"identify diagnose{options} {name}"):
-        status, said = run(command, folder, environment)
-        counts = next(([int(number) for number in found] for line in said
-                       for found in re.findall(r"^(\d+) fitted, \d+ already there, (\d+) failed", line)), None)
-        verdict = next((line for line in said if line.startswith("Verdict")), None)
-        print(f"{name}: {command}: exit status {status}" + (f"; {counts[0]} fitted, {counts[1]} failed" if counts else "")
-              + (f"; {verdict}" if verdict else ""))
-        wrong += counts[0] == 0 or counts[0] < 9 * counts[1] if counts else status != 0 and verdict is None
-    return wrong
-
-
 def main(arguments):
     texts = "--help-texts" in arguments
-    owns = [pathlib.Path(arguments[k + 1]).resolve() for k, one in enumerate(arguments[:-1]) if one == "--own"]
-    options = {"--help-texts", "--own", *(arguments[k + 1] for k, one in enumerate(arguments[:-1]) if one == "--own")}
-    named = [argument for argument in arguments if argument not in options]
-    unknown = any(one.startswith("--") for one in named) or arguments[-1:] == ["--own"]
-    if len(named) > 1 or unknown or not all(one.is_dir() for one in owns):
+    named = [argument for argument in arguments if argument != "--help-texts"]
+    if len(named) > 1 or any(one.startswith("--") for one in named):
         print(__doc__, file=sys.stderr)
         return 2
     with tempfile.TemporaryDirectory() as directory:
@@ -182,8 +145,6 @@ def main(arguments):
         wrong = follow("README.md", fenced((REPOSITORY / "README.md").read_text(encoding="utf-8")), folder, environment)
         for path in sorted((REPOSITORY / "tools/help").glob("*.txt")) if texts else []:
             wrong += follow(path.name, indented(path.read_text(encoding="utf-8")), folder, environment)
-        for own in owns:
-            wrong += follow_own(own, folder, environment)
         return 1 if wrong else 0
 
 

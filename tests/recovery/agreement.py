@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Two questions with one answer, and two halves of one record, for any records.
 
-usage: scripts/agreement IDENTIFY [RECORDS]   RECORDS: a file with the options and files of one record a line (default:
+usage: agreement.py IDENTIFY [RECORDS]   RECORDS: a file with the options and files of one record a line (default:
                                               standard input), as for `identify diagnose`; paths from where it is run
 
 For each record, `diagnose` names effects, and `identify` fits the best law with them: every parameter must have the
