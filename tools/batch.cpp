@@ -20,9 +20,9 @@
 #include "summary.hpp"
 #include "tribofit/campaign/batch.hpp"
 #include "tribofit/campaign/plan.hpp"
-#include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/text_of_file.hpp"
+#include "tribofit/output/whole_file.hpp"
 #include "tribofit/report/campaign.hpp"
 
 using namespace tribofit;
@@ -261,7 +261,7 @@ ExitStatus run_as_batch(const Settings& s, Campaign campaign, const IdentifyOpti
       refused = print_refusals(all);
       refused = worse(refused, refuse_replaced(all.summary.missing, outcome, batch.results));
     }
-  } catch (const InputError& error) {  // the results cannot be written: the input may be as good as it likes
+  } catch (const std::runtime_error& error) {  // the results cannot be written: the input may be as good as it likes
     print_error(error.what());
     return ExitStatus::failed;
   }

@@ -9,8 +9,8 @@
 
 #include "command.hpp"
 #include "console.hpp"
-#include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/output/whole_file.hpp"
 #include "tribofit/version.hpp"
 #include "verbs.hpp"
 
@@ -71,6 +71,9 @@ ExitStatus run_and_report(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const tribofit::InputError& error) {
+    print_error(error.what());
+    return ExitStatus::bad_input;
+  } catch (const tribofit::WriteError& error) {
     print_error(error.what());
     return ExitStatus::bad_input;
   } catch (const std::bad_alloc&) {

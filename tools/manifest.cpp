@@ -8,8 +8,8 @@
 
 #include "console.hpp"
 #include "tribofit/campaign/names.hpp"
-#include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/ingest/manifest.hpp"
+#include "tribofit/output/whole_file.hpp"
 #include "tribofit/report/terminal.hpp"
 #include "verbs.hpp"
 

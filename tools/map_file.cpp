@@ -7,9 +7,9 @@
 #include <cstring>
 #include <filesystem>
 
-#include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/text_of_file.hpp"
+#include "tribofit/output/whole_file.hpp"
 #include "tribofit/report/study.hpp"
 #include "tribofit/version.hpp"
 

@@ -34,7 +34,7 @@ ExitStatus merge(const Settings& s, const std::string& folder, const ReportOptio
   Summarised all;
   try {
     all = summarise(s, results, shown);
-  } catch (const InputError& error) {  // it cannot be written
+  } catch (const std::runtime_error& error) {  // it cannot be written
     print_error(error.what());
     return ExitStatus::failed;
   }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "settings.hpp"
-#include "tribofit/campaign/whole_file.hpp"
+#include "tribofit/output/whole_file.hpp"
 #include "tribofit/report/pictures.hpp"
 #include "tribofit/report/report.hpp"
 

@@ -20,7 +20,6 @@
 #include "simulated_drive.hpp"
 #include "simulated_steps.hpp"
 #include "stated_value.hpp"
-#include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/friction/model.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
@@ -29,6 +28,7 @@
 #include "tribofit/oscillator/sensors.hpp"
 #include "tribofit/oscillator/simulate.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
+#include "tribofit/output/whole_file.hpp"
 #include "tribofit/version.hpp"
 #include "verbs.hpp"
 

@@ -11,11 +11,11 @@
 #include "console.hpp"
 #include "driven_options.hpp"
 #include "stated_value.hpp"
-#include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/record_kind.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/oscillator/velocity_steps.hpp"
+#include "tribofit/output/whole_file.hpp"
 #include "tribofit/version.hpp"
 
 using Json = nlohmann::ordered_json;

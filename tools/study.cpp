@@ -16,10 +16,10 @@
 #include "results.hpp"
 #include "stated_value.hpp"
 #include "studied_machine.hpp"
-#include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
+#include "tribofit/output/whole_file.hpp"
 #include "tribofit/report/study.hpp"
 #include "verbs.hpp"
 

@@ -9,8 +9,8 @@
 #include "analysis_options.hpp"
 #include "console.hpp"
 #include "results.hpp"
-#include "tribofit/campaign/whole_file.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/output/whole_file.hpp"
 #include "tribofit/report/figures.hpp"
 #include "tribofit/report/pooled.hpp"
 

@@ -2,7 +2,7 @@
 #include <string>
 #include <system_error>
 
-#include "json.hpp"
+#include "output/json.hpp"
 #include "tribofit/campaign/batch.hpp"
 #include "tribofit/version.hpp"
 

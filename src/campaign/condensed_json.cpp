@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "json.hpp"
+#include "output/json.hpp"
 #include "tribofit/ingest/units.hpp"
 
 namespace tribofit {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "csv_table.hpp"
-#include "json.hpp"
+#include "output/csv_table.hpp"
+#include "output/json.hpp"
 #include "tribofit/campaign/pool.hpp"
 #include "tribofit/campaign/run_result.hpp"
 #include "tribofit/ingest/units.hpp"

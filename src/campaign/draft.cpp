@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <utility>
 
-#include "csv_table.hpp"
 #include "find_runs.hpp"
 #include "limits.hpp"
+#include "output/csv_table.hpp"
 #include "tribofit/campaign/names.hpp"
 #include "tribofit/campaign/run.hpp"
 #include "tribofit/ingest/input_error.hpp"

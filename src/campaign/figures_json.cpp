@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "json.hpp"
+#include "output/json.hpp"
 
 namespace tribofit {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "tribofit/ingest/spelling.hpp"
+#include "tribofit/output/text.hpp"
 
 namespace tribofit {
 namespace {

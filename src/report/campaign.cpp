@@ -13,7 +13,7 @@
 #include "json_parts.hpp"
 #include "numbers.hpp"
 #include "terminal_text.hpp"
-#include "tribofit/campaign/whole_file.hpp"
+#include "tribofit/output/whole_file.hpp"
 #include "tribofit/version.hpp"
 
 namespace tribofit {

@@ -8,9 +8,9 @@
 #include <set>
 #include <span>
 
-#include "campaign/csv_table.hpp"
 #include "fit/assessment.hpp"
 #include "numbers.hpp"
+#include "output/csv_table.hpp"
 #include "segmentation/counts.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/segmentation/strokes.hpp"

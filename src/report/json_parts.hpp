@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "campaign/json.hpp"
+#include "output/json.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/report/json.hpp"
 #include "tribofit/report/report.hpp"

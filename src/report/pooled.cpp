@@ -9,7 +9,7 @@
 #include "json_parts.hpp"
 #include "numbers.hpp"
 #include "tribofit/campaign/earlier.hpp"
-#include "tribofit/campaign/whole_file.hpp"
+#include "tribofit/output/whole_file.hpp"
 #include "tribofit/version.hpp"
 
 namespace tribofit {

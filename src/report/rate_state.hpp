@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "campaign/json.hpp"
 #include "commands.hpp"
+#include "output/json.hpp"
 #include "tribofit/fit/identification.hpp"
 #include "tribofit/report/report.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "folder.hpp"
 #include "made_up.hpp"
-#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/output/whole_file.hpp"
 
 namespace tribofit {
 namespace {
@@ -104,16 +104,16 @@ TEST_F(Csv, WritesWithoutAFit) {
 
 TEST_F(Csv, AFileInTheWayIsNamedAndNothingAppears) {
   std::ofstream(folder_.path("out")) << "mine";
-  EXPECT_THROW(write_csv_folder(folder_.path("out"), result_), InputError);
+  EXPECT_THROW(write_csv_folder(folder_.path("out"), result_), WriteError);
   EXPECT_EQ(contents(folder_.path("out")), "mine");
 }
 
 TEST_F(Csv, AllOrNothing) {
   std::filesystem::create_directories(folder_.path("out/errors.csv"));  // the last file cannot be written
-  EXPECT_THROW(write_csv_folder(folder_.path("out"), result_), InputError);
+  EXPECT_THROW(write_csv_folder(folder_.path("out"), result_), WriteError);
   EXPECT_THAT(read_rows(folder_.path("out/samples.csv")), ::testing::IsEmpty());
   const Folder other;
-  EXPECT_THROW(write_csv_folder(other.path("a/b"), result_), InputError);
+  EXPECT_THROW(write_csv_folder(other.path("a/b"), result_), WriteError);
   EXPECT_TRUE(other.names().empty());
 }
 

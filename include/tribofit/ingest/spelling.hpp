@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "tribofit/output/text.hpp"
+
 namespace tribofit {
 
 /// " (did you mean X?)" or nothing.
@@ -22,9 +24,6 @@ std::string lower_case(std::string_view text);
 
 /// `text` with every `from` replaced.
 std::string replaced(std::string text, std::string_view from, std::string_view to);
-
-/// `text` with control characters spelt out ("\\n", "\\x1b"), so that a terminal shows and does not obey them.
-std::string printable(std::string_view text);
 
 /// The parts of `text` between separators; as many as there are separators, and one more.
 std::vector<std::string> split(std::string_view text, std::string_view separator);

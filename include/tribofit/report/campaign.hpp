@@ -32,7 +32,7 @@ struct CampaignSummary {
 /// status "missing". Nothing in them depends on when, where or how fast the runs were fitted.
 /// summary.json is {"tool", "runs": [...], "problems": [...]}, a line a run.
 /// `comparison`, the object of comparison_json(), is added under that key where it is given.
-/// Throws InputError. Cost: linear in runs; memory hardly grows with them.
+/// Throws WriteError. Cost: linear in runs; memory hardly grows with them.
 CampaignSummary write_summary(const ResultReader& results, const TerminalOptions& options = {},
                               const std::string& comparison = {});
 

@@ -21,7 +21,7 @@ struct Identification;
 ///              standard errors
 ///
 /// Where friction is a force, mu and mu_model are in newtons, as "friction_unit" in the JSON says; other columns carry
-/// their unit in the name. Throws InputError when the disc is full or the folder cannot be written. Cost: linear in
+/// their unit in the name. Throws WriteError when the disc is full or the folder cannot be written. Cost: linear in
 /// samples.
 void write_csv_folder(const std::string& folder, const Identification& result);
 

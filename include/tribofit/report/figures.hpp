@@ -20,7 +20,7 @@ namespace tribofit {
 /// 12-relative-error.csv        the same over all slip samples, with the share below 0.08
 ///
 /// A row begins with the run (or the number of runs) and its conditions; units stand in the names of the columns.
-/// Each file appears whole or not at all. `runs` are those of `results`, `groups` their repeats. Throws InputError.
+/// Each file appears whole or not at all. `runs` are those of `results`, `groups` their repeats. Throws WriteError.
 /// Cost: linear in runs; memory does not grow with them.
 void write_figures(const ResultReader& results, std::span<const RunResult> runs, std::span<const PooledGroup> groups);
 

@@ -26,8 +26,8 @@ bool can_write_pictures(PictureFormat format);
 /// Pictures of all charts of a report, made and on the disc but without their names until commit().
 ///
 /// Lines that the page shows only when its legend is used are left out. Names in the charts are shown as they are,
-/// whatever they hold. Throws InputError where can_write_pictures() is false or the folder cannot be written; nothing
-/// is left then. Cost: linear in points, a few milliseconds for each picture.
+/// whatever they hold. Throws InputError where can_write_pictures() is false, WriteError where the folder cannot be
+/// written; nothing is left then. Cost: linear in points, a few milliseconds for each picture.
 class PictureFiles {
  public:
   PictureFiles(const Report& report, const std::string& folder, PictureFormat format);

@@ -13,7 +13,7 @@ namespace tribofit {
 /// - shared.csv, where parameters are shared: a row for every common value, then one for every run and parameter
 /// - trends.csv: a row for every law, parameter and condition
 /// - pooled.json: {"tool", "groups", "shared", "trends", "confounded", "warnings"}
-/// Units stand in a column "unit", those of conditions in the names of their columns. Throws InputError.
+/// Units stand in a column "unit", those of conditions in the names of their columns. Throws WriteError.
 void write_pooled(const std::string& folder, std::span<const RunResult> runs, const Pooled& pooled);
 
 /// The same for people: repeats as mean and interval, what is shared, significant trends, what goes together.

@@ -4,7 +4,7 @@
 #include <variant>
 #include <vector>
 
-#include "campaign/whole_folder.hpp"
+#include "output/whole_folder.hpp"
 #include "report/pictures/canvas.hpp"
 #include "report/pictures/draw.hpp"
 #include "report/pictures/layout.hpp"

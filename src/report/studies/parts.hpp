@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "campaign/csv_table.hpp"
+#include "output/csv_table.hpp"
 #include "report/charts/styles.hpp"
 #include "report/json_parts.hpp"
 #include "report/numbers.hpp"

@@ -1,4 +1,4 @@
-#include "tribofit/campaign/whole_file.hpp"
+#include "tribofit/output/whole_file.hpp"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -20,7 +20,7 @@
 #include <thread>
 #include <utility>
 
-#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/output/text.hpp"
 
 namespace tribofit {
 namespace {
@@ -154,8 +154,11 @@ int open_special(const std::string& path) {
 
 }  // namespace
 
+WriteError::WriteError(const std::string& file, const std::string& reason, const std::string& advice)
+    : std::runtime_error(printable((file.empty() ? "" : file + ": ") + reason + "; " + advice)) {}
+
 WholeFile::WholeFile(std::string path) : path_(std::move(path)), target_(path_) {
-  if (path_.empty()) throw InputError("the name of an output file is empty", "name a file");
+  if (path_.empty()) throw WriteError("", "the name of an output file is empty", "name a file");
   struct stat status {};
   const bool exists = ::stat(path_.c_str(), &status) == 0;
   if (exists && S_ISDIR(status.st_mode)) fail(EISDIR);
@@ -201,7 +204,7 @@ WholeFile::~WholeFile() {
 }
 
 void WholeFile::fail(int error) {
-  throw InputError(std::string("cannot be written: ") + std::strerror(error), advice_for(error), {path_, 0, ""});
+  throw WriteError(path_, std::string("cannot be written: ") + std::strerror(error), advice_for(error));
 }
 
 void WholeFile::write(std::string_view text) {

@@ -10,8 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "tribofit/campaign/whole_file.hpp"
-#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/output/whole_file.hpp"
 
 namespace tribofit {
 
@@ -46,7 +45,7 @@ class WholeFolder {
 
  private:
   [[noreturn]] void fail(const std::string& reason) {
-    throw InputError("the folder cannot be written: " + reason, "name a folder you may write to", {path_, 0, ""});
+    throw WriteError(path_, "the folder cannot be written: " + reason, "name a folder you may write to");
   }
 
   std::string path_;

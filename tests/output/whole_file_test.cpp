@@ -1,4 +1,4 @@
-#include "tribofit/campaign/whole_file.hpp"
+#include "tribofit/output/whole_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "report/folder.hpp"
-#include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {
 namespace {
@@ -70,7 +69,7 @@ TEST(WholeFile, ADiscThatFillsUpKeepsTheOldFile) {
   write_whole(path, "old");
   {
     const SmallDisc disc(64 * 1024);
-    EXPECT_THROW(write_whole(path, std::string(1 << 20, 'x')), InputError);
+    EXPECT_THROW(write_whole(path, std::string(1 << 20, 'x')), WriteError);
   }
   EXPECT_EQ(contents(path), "old");
   EXPECT_THAT(folder.names(), ::testing::ElementsAre("a.json"));
@@ -81,18 +80,16 @@ TEST(WholeFile, AFullDeviceIsNamedWithWhatToDo) {
   try {
     write_whole("/dev/full", "x");
     FAIL() << "nothing was thrown";
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.where().file, "/dev/full");
-    EXPECT_THAT(error.problem(), ::testing::HasSubstr("No space left"));
-    EXPECT_FALSE(error.advice().empty());
+  } catch (const WriteError& error) {
+    EXPECT_THAT(error.what(), ::testing::MatchesRegex("/dev/full: .*No space left.*; .+"));
   }
 }
 
 TEST(WholeFile, SaysWhatIsWrongWithThePlace) {
   const Folder folder;
-  EXPECT_THROW(write_whole(folder.path("missing/a.json"), "x"), InputError);
-  EXPECT_THROW(write_whole(folder.path(""), "x"), InputError);  // a folder
-  EXPECT_THROW(write_whole("", "x"), InputError);
+  EXPECT_THROW(write_whole(folder.path("missing/a.json"), "x"), WriteError);
+  EXPECT_THROW(write_whole(folder.path(""), "x"), WriteError);  // a folder
+  EXPECT_THROW(write_whole("", "x"), WriteError);
 }
 
 TEST(WholeFile, KeepsLinksAndRights) {

@@ -1,14 +1,21 @@
 #pragma once
 
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
 namespace tribofit {
 
+/// A file or folder cannot be written. what() reads "FILE: REASON; ADVICE".
+class WriteError : public std::runtime_error {
+ public:
+  WriteError(const std::string& file, const std::string& reason, const std::string& advice);
+};
+
 /// A file that appears whole or not at all: written beside its final name, then renamed onto it.
 ///
 /// What is not a regular file (a terminal, a pipe, /dev/stdout) is written directly.
-/// Every function throws InputError with the file, what failed and what to do.
+/// Every function throws WriteError.
 class WholeFile {
  public:
   explicit WholeFile(std::string path);

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tribofit {
+
+/// `text` with control characters spelt out ("\\n", "\\x1b"), so that a terminal shows and does not obey them.
+std::string printable(std::string_view text);
+
+/// "slope [mm/s]", or the name alone where the unit is "1" or empty.
+std::string with_unit(const std::string& name, const std::string& unit);
+
+/// " mm/s" behind a number; nothing where the unit is "1".
+std::string unit_behind(const std::string& unit);
+
+/// "a", "a and b", "a, b and c".
+std::string enumerated(const std::vector<std::string>& names, std::string_view last = "and");
+
+/// "Most"; the rest of the text as it is.
+std::string capitalised(std::string text);
+
+}  // namespace tribofit
