@@ -12,7 +12,6 @@
 #include "fit/fit_laws.hpp"
 #include "fit/requested_effects.hpp"
 #include "ingest/declared_conditions.hpp"
-#include "kinematics/side_by_side.hpp"
 #include "segmentation/obstacles.hpp"
 #include "study/fit_machines.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -90,10 +89,9 @@ Identification prepare(const TraceInput& input, const IdentifyOptions& options, 
                        Purpose purpose) {
   Trace trace = input.trace ? *input.trace : read_file(input, options);
   Identification facts = facts_of(input.path, trace);
-  return segment(
-      std::move(facts),
-      compute_motion(std::move(trace), options.instruments, with_corrections(motion, options.effects), options.threads),
-      options, purpose);
+  MotionOptions corrected = with_corrections(motion, options.effects);
+  corrected.threads = options.threads;
+  return segment(std::move(facts), compute_motion(std::move(trace), options.instruments, corrected), options, purpose);
 }
 
 /// What effects of friction need is checked when they are fitted.

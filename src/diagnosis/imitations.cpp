@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "limits.hpp"
-#include "tribofit/kinematics/health_names.hpp"
+#include "tribofit/kinematics/health.hpp"
 
 namespace tribofit::diagnosis {
 namespace {

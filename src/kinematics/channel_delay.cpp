@@ -6,7 +6,7 @@
 
 #include "health_checks.hpp"
 #include "limits.hpp"
-#include "tribofit/kinematics/health_names.hpp"
+#include "tribofit/kinematics/health.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 // How friction and velocity lie beside each other in time.

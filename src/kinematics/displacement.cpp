@@ -148,20 +148,20 @@ void set_velocity(const LocalDerivatives& x, const LocalDerivatives& y, Trace& t
   }
 }
 
-/// Kinks where the mass turns round without a rest: it is fast within a window before and behind them.
+/// Corners where the mass turns round without a rest: it is fast within a window before and behind them.
 std::vector<std::size_t> free_reversals(const Trace& trace, std::size_t half) {
   const std::vector<double>& v = trace.velocity;
   double largest = 0;
   for (const double x : v) largest = std::max(largest, std::abs(x));
   const double fast = kTurnsRound * largest;
-  std::vector<std::size_t> kinks;
+  std::vector<std::size_t> corners;
   for (std::size_t i = half; i + half < v.size(); ++i) {
     if ((v[i - 1] < 0) == (v[i] < 0)) continue;
     if (std::abs(v[i - half]) < fast || std::abs(v[i + half - 1]) < fast) continue;
-    if (kinks.empty() || kinks.back() < i - 1) kinks.push_back(i - 1);
-    kinks.push_back(i + 1);
+    if (corners.empty() || corners.back() < i - 1) corners.push_back(i - 1);
+    corners.push_back(i + 1);
   }
-  return kinks;
+  return corners;
 }
 
 /// v_r in the trace, against what the mass rubs on.

@@ -10,7 +10,7 @@
 
 #include "limits.hpp"
 #include "tribofit/ingest/units.hpp"
-#include "tribofit/kinematics/health_names.hpp"
+#include "tribofit/kinematics/health.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/spectrum.hpp"
 
@@ -43,8 +43,9 @@ struct Band {
   double order = 0;       // the power of frequency with which it does
 };
 
-// Stick-slip falls with the first power of frequency in friction (it jumps) and the second in velocity (it has kinks),
-// a sensor of second order adds two. What falls faster over an octave, while still above its floor, was low-passed.
+// Stick-slip falls with the first power of frequency in friction (it jumps) and the second in velocity (it has
+// corners), a sensor of second order adds two. What falls faster over an octave, while still above its floor, was
+// low-passed.
 void find_corner(const Spectrum& spectrum, double floor, Band& band) {
   constexpr double third_of_octave = 1.259921;
   std::vector<double> frequency, amplitude;
@@ -183,7 +184,7 @@ HealthItem check_bandwidth(const Motion& motion, std::span<const double> velocit
         "; v_r decays at re-stick as after a {}low-pass at {} ({} slips): mu_s, mu_k and the law's decay (alpha) are "
         "not those of the contact, a bandwidth of {} is needed",
         restick.is_second_order ? "second-order " : "", frequency_text(restick.corner(), 2), restick.slips,
-        frequency_text(restick.corner() * std::min(restick.at_restick, 1.0) / kKinkHarmless, 2));
+        frequency_text(restick.corner() * std::min(restick.at_restick, 1.0) / kRestickHarmless, 2));
     return item;
   }
   const double low = lowest_pass(a), other = lowest_pass(b);

@@ -11,9 +11,9 @@
 #include "low_pass.hpp"
 #include "plateau.hpp"
 #include "plateau_search.hpp"
-#include "range_crowds.hpp"
 #include "recording_faults.hpp"
 #include "ripple.hpp"
+#include "saturation.hpp"
 #include "spoilt_samples.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/ingest/trace.hpp"
@@ -27,14 +27,14 @@ struct EndRuns {
   bool is_far = false;    ///< no other value is further from zero
   std::size_t count = 0;  ///< samples in runs of at least three; 0 where the channel repeats at other values too
   std::vector<SampleSpan> spans;  ///< those runs
-  PileUp pile;                    ///< the same with noise on it
+  Saturation saturation;          ///< the same with noise on it
 };
 
 /// Both ends of both channels as recorded.
 struct RangeEnds {
   std::array<EndRuns, 2> friction, velocity;
   double largest_velocity = 0;                  ///< [m/s]
-  double friction_slew = 0, velocity_slew = 0;  ///< largest change in a sample, where changes crowd at it; 0: none
+  double friction_slew = 0, velocity_slew = 0;  ///< largest change in a sample, where changes gather at it; 0: none
 };
 RangeEnds range_ends(const Trace& trace, const ChannelOutlines& channels, int threads);
 

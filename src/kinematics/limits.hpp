@@ -180,32 +180,33 @@ inline constexpr double kClearEvidence = 7;
 // ---- low-pass of the velocity
 /// The end of a slip that is looked at, over the fastest: from where v_r last falls below the first to below the third
 /// (a cubic follows it), of slips that reach the last. Behind a slow filter from the second on, where from the first
-/// there is neither a filter nor a kink that leaves less than kKinkUnexplained of the fastest. Before short sticks,
-/// which hold less than half as many samples as v_r falls in, from kKinkFromShort on.
-inline constexpr double kKinkFrom = 0.2, kKinkFromSlow = 0.45, kKinkFromShort = 0.06, kKinkDown = 0.02, kKinkSlip = 0.5;
-inline constexpr double kKinkUnexplained = 2e-3;
+/// there is neither a filter nor a corner that leaves less than kRestickUnexplained of the fastest. Before short
+/// sticks, which hold less than half as many samples as v_r falls in, from kRestickFromShort on.
+inline constexpr double kRestickFrom = 0.2, kRestickFromSlow = 0.45, kRestickFromShort = 0.06, kRestickDown = 0.02,
+                        kRestickSlip = 0.5;
+inline constexpr double kRestickUnexplained = 2e-3;
 /// The rest that is looked at, over the fall: twice as much where the stick is long. Less shows that there is none.
-inline constexpr double kKinkRest = 1.5, kKinkRestShort = 0.5;
+inline constexpr double kRestickRest = 1.5, kRestickRestShort = 0.5;
 /// Slope of v_r when it comes to rest, over its mean one in the look: a spring brakes it most at the end, a mean over
 /// more than the look makes a parabola of it.
-inline constexpr double kKinkSteep = 0.6;
+inline constexpr double kRestickSteep = 0.6;
 /// Squares that a decay from where the look begins leaves over those of a filter; fewer: re-stick was before.
-inline constexpr double kKinkInside = 30;
-/// Samples in which it falls: fewer show no kink, of more every other will do. Slips; those of a first look.
-inline constexpr std::size_t kKinkSamples = 5, kKinkMost = 40, kKinkSlips = 12, kKinkFew = 4;
+inline constexpr double kRestickInside = 30;
+/// Samples in which it falls: fewer show no corner, of more every other will do. Slips; those of a first look.
+inline constexpr std::size_t kRestickSamples = 5, kRestickMost = 40, kRestickSlips = 12, kRestickFew = 4;
 /// Time constants [samples], each so many times the one before; what the first look may leave, over the least.
-inline constexpr double kKinkFirst = 0.15, kKinkNext = 1.35, kKinkRival = 4;
+inline constexpr double kRestickFirst = 0.15, kRestickNext = 1.35, kRestickRival = 4;
 /// Standard uncertainty of a time constant, over it, for the cubic that stands for v_r before re-stick (off by 2 %
 /// either way in simulated records) and where it is of the tail alone; from when on, how long that is [times it].
-inline constexpr double kKinkModel = 0.01, kDecayModel = 5e-4, kDecayAfter = 0.5, kDecayLasts = 3;
+inline constexpr double kRestickModel = 0.01, kDecayModel = 5e-4, kDecayAfter = 0.5, kDecayLasts = 3;
 /// What v_r reads at re-stick over the fastest: alpha is off by some five times as much; what does not matter.
-inline constexpr double kKinkSeen = 0.008, kKinkHarmless = 0.001;
-/// Squares that a kink leaves over those a filter leaves, and what the filter may leave over the reading: a contact
+inline constexpr double kRestickSeen = 0.008, kRestickHarmless = 0.001;
+/// Squares that a corner leaves over those a filter leaves, and what the filter may leave over the reading: a contact
 /// that rings there is no filter.
-inline constexpr double kKinkExplained = 2.5, kKinkLeft = 0.08;
+inline constexpr double kRestickExplained = 2.5, kRestickLeft = 0.08;
 /// How far v_r may go beyond rest, over the reading and over the noise, and rise in the middle of a stick, over the
 /// reading: a filter does not (1e-4), a contact that yields or spins does (0.1 to 0.8).
-inline constexpr double kKinkBeyond = 0.1, kKinkNoise = 4, kKinkCreeps = 0.05;
+inline constexpr double kRestickBeyond = 0.1, kRestickNoise = 4, kRestickCreeps = 0.05;
 
 /// Samples by which a restored velocity may be early or late for what its filter does to a sample.
 inline constexpr double kHeldInput = 0.75;
@@ -300,13 +301,13 @@ inline constexpr double kJumpsPerPlateau = 0.1, kUsualJump = 0.5;
 /// 1e-4 in its slope and 1e-3 in its second derivative; wider, slips are rounded; narrower, noise grows with the power
 /// -5/2.
 inline constexpr double kPartOfPeriod = 1.0 / 12;
-/// Samples to either side: fewer leave no degree of freedom that would show a kink; more cost time for nothing.
+/// Samples to either side: fewer leave no degree of freedom that would show a corner; more cost time for nothing.
 inline constexpr std::size_t kShortestHalf = 4, kWidestHalf = 500;
 /// How nearly the steepest fall of the pull is that of stiffness and mass: friction that falls with speed makes it
 /// steeper by some per cent, noise by some more.
 inline constexpr double kFrequencyAgrees = 0.2;
 /// Standard error of a velocity over the median, from which it is not used, and samples beside it: where a window
-/// ends at a kink the error is six times as large, and the slope of the velocity over five samples is nothing.
+/// ends at a corner the error is six times as large, and the slope of the velocity over five samples is nothing.
 inline constexpr double kUnsure = 2.5;
 inline constexpr std::size_t kBesideUnsure = 2;
 /// Standard errors of the velocity and part of the fastest slip, from which a slider on a spring slips.
@@ -363,22 +364,22 @@ inline constexpr std::size_t kShortestFrozen = 16, kShortestZero = 3, kShortestS
 /// Such a channel repeats a value in fewer pairs of neighbours than the first (a coarse converter repeats more), and
 /// turns in more of its samples than the second (white noise in 2 of 3, a motion without noise in one of a hundred).
 inline constexpr double kFewRepeats = 0.02, kManyTurns = 0.05;
-/// Bins of a channel's range, the widest crowd as a part of it, which so many of some parts of a record reach.
+/// Bins of a channel's range, the widest dense part as a part of it, which so many of some parts of a record reach.
 inline constexpr std::size_t kClipBins = 4096, kNarrowestRange = 16, kPartsOfRange = 16;
 inline constexpr double kReachIt = 0.25;
 /// Density of samples at the limit over that beside it. A turning point (a parabola) has 3 over any width, a peak 1:
 /// the first needs quiet (noise over that elsewhere), the second, of a block that sticks and slips, does not.
-inline constexpr double kCrowdedQuiet = 2, kCrowdedAlone = 6, kQuiet = 0.7;
+inline constexpr double kDenseQuiet = 2, kDenseAlone = 6, kQuiet = 0.7;
 /// Of its usual rise over the way of the block, by which friction at a limit goes on; standard errors below it; change
 /// of that way, with which the block still rests.
 inline constexpr double kStillRises = 0.5, kClippedErrors = 4, kCarriedOn = 0.02;
 /// Samples at a limit: fewer do not bear on a fit; samples between two at it that are taken for clipped too (noise
 /// brings them below it), and beside a stretch.
 inline constexpr std::size_t kFewestClipped = 32, kOneClippedIn = 2000, kClipHole = 32, kClipMargin = 8;
-/// Samples of a mean in which a crowd is looked for behind noise as wide as its own, how dense it must be, and means in
-/// a row: friction that is held is so for a good part of a stick.
+/// Samples of a mean in which a dense part is looked for behind noise as wide as its own, how dense it must be, and
+/// means in a row: friction that is held is so for a good part of a stick.
 inline constexpr std::size_t kSmoothedOver = 32, kFewestSmoothed = 3;
-inline constexpr double kCrowdedSmoothed = 8;
+inline constexpr double kDenseSmoothed = 8;
 /// Changes in a sample that an amplifier cannot exceed: over a converter's steps, how alike, and how many in a row.
 inline constexpr double kSlewSteps = 16, kSlewWidth = 0.02;
 inline constexpr std::size_t kShortestSlew = 8;

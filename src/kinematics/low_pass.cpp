@@ -128,11 +128,11 @@ double left_by_decay(const std::vector<Restick>& some, double t) {
 double left_by_decay(const std::vector<Restick>& some) {
   const double longest = 2 * static_cast<double>(some.front().velocity.size());
   double best = 1, least = std::numeric_limits<double>::infinity();
-  for (double t = 1; t < longest; t *= kKinkNext) {
+  for (double t = 1; t < longest; t *= kRestickNext) {
     if (const double left = left_by_decay(some, t); left < least) least = left, best = t;
   }
   const auto left = [&](double t) { return left_by_decay(some, t); };
-  return golden_section(left, best / kKinkNext, best * kKinkNext, kCuts).value;
+  return golden_section(left, best / kRestickNext, best * kRestickNext, kCuts).value;
 }
 
 /// Over re-sticks.
@@ -171,7 +171,7 @@ struct Refined {
 
 Refined refine(const Restick& restick, double about) {
   const auto least = [&](const auto& left) {
-    return golden_section(left, about / kKinkNext, about * kKinkNext, kCuts).at;
+    return golden_section(left, about / kRestickNext, about * kRestickNext, kCuts).at;
   };
   Refined out{least([&](double t) { return fit(restick, {Response::first_order, t}).squares; }), {}};
   const double from = fit(restick, {Response::first_order, out.by_all}).at + kDecayAfter * about + 1;
@@ -197,7 +197,7 @@ void refine(const std::vector<Restick>& some, double about, double step, int thr
     by_all.push_back(stride * refined[k].by_all);
     if (refined[k].by_tail) by_tail.push_back(stride * *refined[k].by_tail);
   }
-  const Estimate all = usual_of(by_all, kKinkModel);
+  const Estimate all = usual_of(by_all, kRestickModel);
   const Estimate tail = by_tail.size() < kFewestPeriods ? all : usual_of(by_tail, kDecayModel);
   const Estimate& best = tail.std_error < all.std_error ? tail : all;
   found.tau = best.value * step;
@@ -212,9 +212,9 @@ double LowPass::corner() const {
 
 namespace {
 
-/// What re-sticks show from a part of the fastest on. is_explained: there is a filter, or a kink leaves next to
+/// What re-sticks show from a part of the fastest on. is_explained: there is a filter, or a corner leaves next to
 /// nothing (is_sharp).
-struct Look {
+struct FilterFinding {
   LowPass found;
   bool is_explained = false, is_sharp = false;
 };
@@ -223,7 +223,7 @@ struct Look {
 std::vector<Filter> filters_for(double fall) {
   std::vector<Filter> filters;
   for (const Response kind : {Response::first_order, Response::second_order, Response::mean}) {
-    for (double t = kKinkFirst; t < (kind == Response::mean ? 2 : 1) * fall; t *= kKinkNext)
+    for (double t = kRestickFirst; t < (kind == Response::mean ? 2 : 1) * fall; t *= kRestickNext)
       filters.push_back({kind, t});
   }
   return filters;
@@ -231,26 +231,26 @@ std::vector<Filter> filters_for(double fall) {
 
 /// Those that may be the best: most leave far more, which few re-sticks show.
 std::vector<Filter> filters_worth(const std::vector<Restick>& some, const std::vector<Filter>& all, int threads) {
-  const std::vector<Restick> few = some_of(some, kKinkFew);
+  const std::vector<Restick> few = some_of(some, kRestickFew);
   std::vector<double> left(all.size());
   run_tasks(all.size(), threads, [&](std::size_t k) { left[k] = usual(few, all[k]).squares; });
   const double least = left.empty() ? 0 : *std::min_element(left.begin(), left.end());
   std::vector<Filter> worth;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    if (left[k] <= kKinkRival * least) worth.push_back(all[k]);
+    if (left[k] <= kRestickRival * least) worth.push_back(all[k]);
   }
   return worth;
 }
 
 /// Velocity about which re-sticks are looked at, and what is known of it.
-struct Looked {
+struct RestickData {
   std::span<const double> velocity;
   double rest = 0, noise = 0, step = 0, fastest = 0;
   int threads = 1;
 };
 
 /// Where v_r comes to rest after each slip [samples], with the filter that was found.
-std::vector<double> places_of(const std::vector<Restick>& all, const LowPass& found, const Looked& at) {
+std::vector<double> places_of(const std::vector<Restick>& all, const LowPass& found, const RestickData& at) {
   std::vector<double> places(all.size());
   run_tasks(all.size(), at.threads, [&](std::size_t k) {
     const auto stride = static_cast<double>(all[k].stride);
@@ -260,13 +260,13 @@ std::vector<double> places_of(const std::vector<Restick>& all, const LowPass& fo
   return places;
 }
 
-Look look_at(const Looked& at, double from, double shortest = kKinkRest) {
+FilterFinding find_filter(const RestickData& at, double from, double shortest = kRestickRest) {
   const auto& [velocity, rest, noise, step, fastest, threads] = at;
-  Look look;
-  LowPass& found = look.found;
+  FilterFinding finding;
+  LowPass& found = finding.found;
   const std::vector<Restick> all = find_resticks(velocity, rest, fastest, from, shortest),
-                             some = some_of(all, kKinkSlips);
-  if (some.size() < kFewestPeriods) return look;
+                             some = some_of(all, kRestickSlips);
+  if (some.size() < kFewestPeriods) return finding;
   found.slips = some.size();
   std::vector<double> falls;
   for (const Restick& restick : some) falls.push_back(restick.fall);
@@ -280,9 +280,9 @@ Look look_at(const Looked& at, double from, double shortest = kKinkRest) {
   for (std::size_t k = 0; k < filters.size(); ++k) {
     if (behind[k].squares < best.squares) best = behind[k], filter = filters[k];
   }
-  if (sharp.squares > kKinkExplained * best.squares) {
+  if (sharp.squares > kRestickExplained * best.squares) {
     const auto left = [&](double width) { return usual(some, {filter.kind, width}, at.threads).squares; };
-    filter.width = golden_section(left, filter.width / kKinkNext, filter.width * kKinkNext, kCuts).at;
+    filter.width = golden_section(left, filter.width / kRestickNext, filter.width * kRestickNext, kCuts).at;
     best = usual(some, filter, threads);
   }
   double decay = 0;
@@ -293,26 +293,26 @@ Look look_at(const Looked& at, double from, double shortest = kKinkRest) {
       found.rise = rise_in_stick(at.velocity, at.rest, at.fastest) / at.fastest;
     }
   });
-  const double tau = filter.spread(), stride = std::max(1.0, std::floor(most / static_cast<double>(kKinkMost)));
+  const double tau = filter.spread(), stride = std::max(1.0, std::floor(most / static_cast<double>(kRestickMost)));
   found.tau = tau * stride * step;
   found.at_restick = tau * std::abs(best.slope) / fastest;
-  const bool is_inside = decay > kKinkInside * best.squares, decays = sharp.squares > kKinkExplained * decay;
+  const bool is_inside = decay > kRestickInside * best.squares, decays = sharp.squares > kRestickExplained * decay;
   if (!is_inside) found.at_restick = std::max(found.at_restick, from);
-  const bool creeps = found.rise > kKinkCreeps * std::max(found.at_restick, kKinkSeen);
+  const bool creeps = found.rise > kRestickCreeps * std::max(found.at_restick, kRestickSeen);
   // A second order goes beyond rest itself, by as much as it fits.
   const bool returns = filter.kind == Response::second_order ||
-                       beyond_rest(some) < std::max(kKinkBeyond * found.at_restick * fastest, kKinkNoise * noise);
+                       beyond_rest(some) < std::max(kRestickBeyond * found.at_restick * fastest, kRestickNoise * noise);
   found.is_filter =
-      !creeps && tau > 0 && found.at_restick > kKinkSeen && sharp.squares > kKinkExplained * best.squares &&
-      best.squares < std::pow(kKinkLeft * found.at_restick * fastest, 2) && (is_inside || decays) && returns;
+      !creeps && tau > 0 && found.at_restick > kRestickSeen && sharp.squares > kRestickExplained * best.squares &&
+      best.squares < std::pow(kRestickLeft * found.at_restick * fastest, 2) && (is_inside || decays) && returns;
   found.is_second_order = found.is_filter && filter.kind == Response::second_order;
   found.is_first_order = found.is_filter && filter.kind == Response::first_order && is_inside;
   if (found.is_first_order) refine(some, filter.width, step, threads, found);
   found.resticks = places_of(all, found, at);
-  const double left = std::max(kKinkNoise * noise, kKinkUnexplained * fastest);
-  look.is_sharp = sharp.squares < left * left && sharp.slope * most > kKinkSteep * from * fastest;
-  look.is_explained = found.is_filter ? is_inside : look.is_sharp;
-  return look;
+  const double left = std::max(kRestickNoise * noise, kRestickUnexplained * fastest);
+  finding.is_sharp = sharp.squares < left * left && sharp.slope * most > kRestickSteep * from * fastest;
+  finding.is_explained = found.is_filter ? is_inside : finding.is_sharp;
+  return finding;
 }
 
 }  // namespace
@@ -322,20 +322,20 @@ LowPass find_low_pass(std::span<const double> velocity, double rest, double nois
   for (double& v : size) v = std::abs(v - rest);
   const double fastest = size.empty() ? 0 : quantile(std::move(size), 0.999);
   if (!(fastest > 0)) return {};
-  const Looked at{velocity, rest, noise, step, fastest, threads};
-  Look look = look_at(at, kKinkFrom);
+  const RestickData at{velocity, rest, noise, step, fastest, threads};
+  FilterFinding finding = find_filter(at, kRestickFrom);
   // Behind short sticks only the last of the slip shows it.
-  if (look.found.slips == 0) {
+  if (finding.found.slips == 0) {
     // A fast slip is no cubic there, which a filter imitates: only that there is none is seen.
-    const Look last = look_at(at, kKinkFromShort, kKinkRestShort);
-    if (last.is_sharp) look.found = last.found;
-    look.found.is_filter = look.found.is_first_order = false;
-    return look.found;
+    const FilterFinding last = find_filter(at, kRestickFromShort, kRestickRestShort);
+    if (last.is_sharp) finding.found = last.found;
+    finding.found.is_filter = finding.found.is_first_order = false;
+    return finding.found;
   }
-  if (look.is_explained) return look.found;
-  // Behind a slow filter the kink is higher up.
-  Look higher = look_at(at, kKinkFromSlow);
-  return higher.found.is_filter ? higher.found : look.found;
+  if (finding.is_explained) return finding.found;
+  // Behind a slow filter the corner is higher up.
+  FilterFinding higher = find_filter(at, kRestickFromSlow);
+  return higher.found.is_filter ? higher.found : finding.found;
 }
 
 }  // namespace tribofit::kinematics

@@ -12,8 +12,8 @@ struct LowPass {
   double tau = 0;                ///< by which it is late, for a first order its time constant [s]; 0: none
   double std_error = 0;          ///< of a first order's time constant, from slip to slip [s]
   double at_restick = 0;         ///< what v_r reads when it is zero, tau times its slope, over the fastest
-  std::size_t slips = 0;         ///< that were looked at; 0: too few samples to see a kink
-  bool is_filter = false;        ///< it explains what no kink does, and more than alpha's error
+  std::size_t slips = 0;         ///< that were looked at; 0: too few samples to see a corner
+  bool is_filter = false;        ///< it explains what no corner does, and more than alpha's error
   bool is_first_order = false;   ///< a first order explains it best, not a mean
   bool is_second_order = false;  ///< a Butterworth filter of second order does
   double rise = 0;               ///< of v_r in the middle of a stick, the median over the fastest: a contact creeps

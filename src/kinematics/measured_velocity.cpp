@@ -6,7 +6,7 @@
 #include "health_checks.hpp"
 #include "limits.hpp"
 #include "statistics/reductions.hpp"
-#include "tribofit/kinematics/health_names.hpp"
+#include "tribofit/kinematics/health.hpp"
 
 // A v_r that was measured must be zero in stick, and omega r on average: the block goes nowhere.
 

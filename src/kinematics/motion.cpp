@@ -7,16 +7,14 @@
 #include <limits>
 #include <utility>
 
-#include "disc_ripple.hpp"
 #include "displacement.hpp"
-#include "force_alone.hpp"
 #include "held_values.hpp"
 #include "load_point.hpp"
 #include "motion_channels.hpp"
 #include "motion_stages.hpp"
 #include "plateau_ratio.hpp"
-#include "points.hpp"
-#include "side_by_side.hpp"
+#include "records_without_motion.hpp"
+#include "ripple.hpp"
 #include "spring_slider.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/statistics/parallel.hpp"
@@ -42,8 +40,8 @@ bool make_missing_channels(Trace& trace, std::vector<std::string>& notes) {
 
 }  // namespace
 
-MotionStages::MotionStages(Trace trace, const Instruments& instruments, const MotionOptions& options, int threads)
-    : trace_(std::move(trace)), instruments_(instruments), options_(options), threads_(threads) {
+MotionStages::MotionStages(Trace trace, const Instruments& instruments, const MotionOptions& options)
+    : trace_(std::move(trace)), instruments_(instruments), options_(options), threads_(options.threads) {
   kinematics::require_channels(trace_);
   kinematics::take_conditions_from_instruments(trace_.conditions, instruments.rig);
   if (trace_.steps.empty()) trace_.steps.push_back({0, trace_.size(), "", {}});
@@ -248,19 +246,15 @@ void MotionStages::settle_signs_and_levels() {
 namespace tribofit {
 
 Motion compute_motion(Trace trace, const Instruments& instruments, const MotionOptions& options) {
-  return compute_motion(std::move(trace), instruments, options, 1);
-}
-
-Motion compute_motion(Trace trace, const Instruments& instruments, const MotionOptions& options, int threads) {
   if (trace.kind == RecordKind::points) return kinematics::motion_of_points(std::move(trace), instruments, options);
   if (trace.kind == RecordKind::force_only) return kinematics::motion_of_force(std::move(trace));
   if (is_driven_in_steps(trace.kind)) return kinematics::motion_of_load_point(std::move(trace));
   std::vector<std::string> notes;
-  kinematics::keep_fresh_values(trace, threads, notes);
+  kinematics::keep_fresh_values(trace, options.threads, notes);
   MotionOptions own = options;
   const bool was_made = kinematics::make_missing_channels(trace, notes);
   if (was_made) own.undo_high_pass = own.undo_speed_ripple = own.undo_distortions = false;  // of a vibrometer
-  kinematics::MotionStages stages(std::move(trace), instruments, own, threads);
+  kinematics::MotionStages stages(std::move(trace), instruments, own);
   using Stages = kinematics::MotionStages;
   for (const auto stage :
        {&Stages::look_at_recording, &Stages::correct_declared, &Stages::find_disc, &Stages::find_plateau,

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <utility>
 
-#include "compression.hpp"
 #include "limits.hpp"
 #include "motion_stages.hpp"
+#include "net_displacement.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "undo_low_pass.hpp"
 
@@ -73,12 +73,12 @@ void MotionStages::undo_zero() {
   find_plateau();
 }
 
-/// An end of the velocity's range at which slips crowd: they are cut off there, not compressed.
+/// An end of the velocity's range at which slips gather: they are cut off there, not compressed.
 bool MotionStages::clips_slips() const {
   const auto is_cut = [&](const EndRuns& end) {
-    const double level = end.pile.count > 0 ? end.pile.level : end.at;
-    const bool crowds = end.count >= kFewestAtEnd || end.pile.count > 0;
-    return crowds && std::abs(level - search_.plateaus.level) > 0.5 * search_.plateaus.depth;
+    const double level = end.saturation.count > 0 ? end.saturation.level : end.at;
+    const bool is_dense = end.count >= kFewestAtEnd || end.saturation.count > 0;
+    return is_dense && std::abs(level - search_.plateaus.level) > 0.5 * search_.plateaus.depth;
   };
   return is_cut(range_ends_.velocity[0]) || is_cut(range_ends_.velocity[1]);
 }
@@ -157,7 +157,7 @@ void MotionStages::undo_clock_drift() {
 void MotionStages::find_friction_filter() {
   // Behind a filter of the velocity that is not undone re-stick is somewhere else, where the contact creeps friction
   // goes on to change as the contact does, however little that is.
-  const bool rests = low_pass_.rise < kKinkCreeps * kKinkSeen;
+  const bool rests = low_pass_.rise < kRestickCreeps * kRestickSeen;
   const bool is_known = rests && (!low_pass_.is_filter || motion_.velocity_low_pass.any());
   if (!options_.undo_distortions || !is_known || instruments_.force_sensor.bandwidth) return;
   const FrictionLowPass found = find_friction_low_pass(trace_.friction, low_pass_.resticks, motion_.step, threads_);

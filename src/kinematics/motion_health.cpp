@@ -10,7 +10,7 @@
 #include "motion_stages.hpp"
 #include "plateau_ratio.hpp"
 #include "tribofit/ingest/units.hpp"
-#include "tribofit/kinematics/health_names.hpp"
+#include "tribofit/kinematics/health.hpp"
 #include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -27,7 +27,7 @@ void MotionStages::check_clipping() {
   motion_.faults = spoilt_->take();
 }
 
-/// Where the velocity as recorded repeats in stick when there is no noise, and crowds when there is.
+/// Where the velocity as recorded repeats in stick when there is no noise, and gathers when there is.
 std::optional<LevelRange> MotionStages::plateau_as_recorded() const {
   LevelRange levels;  // of v_r
   if (is_block()) {

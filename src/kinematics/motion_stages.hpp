@@ -23,7 +23,7 @@ namespace tribofit::kinematics {
 /// A trace on its way to a motion. Each stage reads what the stages before it have settled.
 class MotionStages {
  public:
-  MotionStages(Trace trace, const Instruments& instruments, const MotionOptions& options, int threads);
+  MotionStages(Trace trace, const Instruments& instruments, const MotionOptions& options);
 
   void look_at_recording();
   void correct_declared();

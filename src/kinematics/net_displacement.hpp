@@ -6,6 +6,7 @@
 #include "plateau_search.hpp"
 #include "tribofit/ingest/trace.hpp"
 #include "tribofit/kinematics/health.hpp"
+#include "tribofit/kinematics/motion.hpp"
 #include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit::kinematics {
@@ -47,5 +48,17 @@ BlockZero find_zero_of_relative(const Trace& trace, const PlateauSearch& search,
 
 /// Adds what was found to the check of the plateau. compression: what was undone of the velocity's gain [1].
 void add_zero(const BlockZero& zero, bool speed_was_stated, double compression, HealthItem& item);
+
+/// v_meas = v_b (1 - part (v_b/fastest)^2): a gain that falls towards the fastest v_b.
+struct Compression {
+  UndoneDistortion part;  ///< [1]; 0: none of this kind
+  double fastest = 0;     ///< [m/s]
+};
+
+/// What was read as v_meas.
+double decompressed(double reading, double part, double fastest);
+
+/// The part by which the block goes nowhere. mean: of v_meas, from stick to stick (see BlockZero). Cost: a few passes.
+Compression find_compression(const Trace& trace, const PlateauSearch& search, const Estimate& mean);
 
 }  // namespace tribofit::kinematics

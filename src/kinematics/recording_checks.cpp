@@ -6,9 +6,9 @@
 
 #include "health_checks.hpp"
 #include "ingest/limits.hpp"
-#include "levelling.hpp"
 #include "limits.hpp"
-#include "tribofit/kinematics/health_names.hpp"
+#include "saturation.hpp"
+#include "tribofit/kinematics/health.hpp"
 #include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -85,25 +85,27 @@ bool turns_over(const ChannelOutline& channel, double limit, const std::vector<S
   return static_cast<double>(longest.size()) / (1 / entered + 1 / left) < kStepsOfATurn;
 }
 
-/// smooths: a crowd is looked for behind noise, too. A velocity crowds where the contact creeps.
+/// smooths: a dense part is looked for behind noise, too. A velocity gathers where the contact creeps.
 std::array<EndRuns, 2> ends_of(const ChannelOutline& channel, bool smooths) {
   const std::span<const double> x = channel.x;
   const Extremes& range = channel.values.whole;
   std::array<EndRuns, 2> ends;
   ends[0].at = range.low, ends[1].at = range.high;
   if (x.size() < kFewestSamples || range.low == range.high || repeats_elsewhere(x, range)) return ends;
-  // Without noise a limit repeats one value, and the crowd of a turn is as quiet as all the rest.
+  // Without noise a limit repeats one value, and the dense part of a turn is as quiet as all the rest.
   const bool has_noise = channel.turns_often();
-  std::array<PileUp, 2> piles = has_noise ? find_pile_ups(channel) : std::array<PileUp, 2>{};
-  const std::array<PileUp, 2> smoothed = has_noise && smooths ? find_smoothed_pile_ups(x) : std::array<PileUp, 2>{};
+  std::array<Saturation, 2> saturations = has_noise ? find_saturation(channel) : std::array<Saturation, 2>{};
+  const std::array<Saturation, 2> smoothed =
+      has_noise && smooths ? find_saturation_behind_noise(x) : std::array<Saturation, 2>{};
   for (std::size_t k = 0; k < 2; ++k) {
-    if (piles[k].density < kCrowdedAlone && !piles[k].is_quiet && smoothed[k].count > 0) piles[k] = smoothed[k];
+    if (saturations[k].density < kDenseAlone && !saturations[k].is_quiet && smoothed[k].count > 0)
+      saturations[k] = smoothed[k];
   }
   for (std::size_t k = 0; k < 2; ++k) {
     ends[k].spans = runs_at(x, channel.values, ends[k].at);
     if (!ends[k].spans.empty() && turns_over(channel, ends[k].at, ends[k].spans)) ends[k].spans.clear();
     for (const SampleSpan& run : ends[k].spans) ends[k].count += run.size();
-    ends[k].pile = piles[k];
+    ends[k].saturation = saturations[k];
     ends[k].is_far = std::abs(ends[k].at) >= std::abs(ends[1 - k].at);
   }
   return ends;
@@ -117,23 +119,23 @@ struct Units {
   std::uint8_t kind;
 };
 
-/// Whether a limit holds what crowds at an end of the range. Where nothing sticks a channel may rest there, as friction
-/// does at the fastest of some constant speeds, but not far from zero and without its noise.
+/// Whether a limit holds what gathers at an end of the range. Where nothing sticks a channel may rest there, as
+/// friction does at the fastest of some constant speeds, but not far from zero and without its noise.
 bool is_held(const EndRuns& end, bool sticks) {
-  const PileUp& pile = end.pile;
-  if (pile.count == 0) return false;
-  if (sticks) return pile.is_quiet || pile.density >= kCrowdedAlone || pile.levels_off;
-  return pile.is_quiet && pile.is_still && end.is_far;
+  const Saturation& saturation = end.saturation;
+  if (saturation.count == 0) return false;
+  if (sticks) return saturation.is_quiet || saturation.density >= kDenseAlone || saturation.stops_rising;
+  return saturation.is_quiet && saturation.is_still && end.is_far;
 }
 
-/// An end of the velocity's range without what rests there in stick; where that is not known, what crowds may.
+/// An end of the velocity's range without what rests there in stick; where that is not known, what gathers may.
 EndRuns without_rest(EndRuns end, double range, const std::optional<LevelRange>& plateau) {
   const auto is_rest = [&](double width) {
     const double off = kSettled * std::max(std::abs(plateau->low), std::abs(plateau->high)) + width;
     return end.at >= plateau->low - off && end.at <= plateau->high + off;
   };
   if (plateau && is_rest(kRoundingOfRange * range)) end.count = 0;
-  if (!plateau || is_rest(range / static_cast<double>(kNarrowestRange))) end.pile.count = 0;
+  if (!plateau || is_rest(range / static_cast<double>(kNarrowestRange))) end.saturation.count = 0;
   return end;
 }
 
@@ -142,16 +144,17 @@ const std::vector<SampleSpan>* add_range_end(const Units& channel, const EndRuns
                                              const char* unreliable, HealthItem& item) {
   const bool held = is_held(end, sticks), repeats = end.count >= kFewestAtEnd;
   if (!repeats && !held) return nullptr;
-  const std::size_t count = std::max(end.count, held ? end.pile.count : 0);
+  const std::size_t count = std::max(end.count, held ? end.saturation.count : 0);
   const double share = static_cast<double>(count) / static_cast<double>(samples);
   item.status = share > kMuchClipped ? Status::problem : Status::warning;
   item.message = fmt::format(
       "{} stays at {:.4g}{} for {} samples ({:.3g} %): the range was too small; they are not used, {} unreliable",
-      channel.name, channel.factor * (repeats ? end.at : end.pile.level), channel.unit, count, 100 * share, unreliable);
-  return held ? &end.pile.spans : &end.spans;
+      channel.name, channel.factor * (repeats ? end.at : end.saturation.level), channel.unit, count, 100 * share,
+      unreliable);
+  return held ? &end.saturation.spans : &end.spans;
 }
 
-/// rate: largest change of the channel in a second, where changes crowd at it; 0: they do not.
+/// rate: largest change of the channel in a second, where changes gather at it; 0: they do not.
 void add_slew(const Units& channel, double rate, HealthItem& item) {
   if (rate == 0) return;
   const bool is_first = item.status == Status::ok;
@@ -203,8 +206,9 @@ RangeEnds range_ends(const Trace& trace, const ChannelOutlines& channels, int th
     out.friction = ends_of(friction, true);
     const bool shows_rest = recorded && trace.velocity_kind == VelocityKind::block && friction.turns_often();
     for (std::size_t k = 0; k < 2 && shows_rest; ++k) {
-      // Friction crowds at break-away too, where it is the same every time: the block slips there already.
-      if (out.friction[k].count == 0) out.friction[k].pile = find_levelling(friction, velocity.x, k == 1);
+      // Friction gathers at break-away too, where it is the same every time: the block slips there already.
+      if (out.friction[k].count == 0)
+        out.friction[k].saturation = find_saturation_in_stick(friction, velocity.x, k == 1);
     }
   };
   run_tasks(4, threads, [&](std::size_t k) {

@@ -10,7 +10,7 @@
 
 #include "limits.hpp"
 #include "statistics/reductions.hpp"
-#include "tribofit/kinematics/health_names.hpp"
+#include "tribofit/kinematics/health.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::kinematics {

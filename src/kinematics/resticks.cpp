@@ -11,10 +11,10 @@ namespace tribofit::kinematics {
 
 std::vector<Restick> find_resticks(std::span<const double> v, double rest, double fastest, double from,
                                    double shortest) {
-  const double high = from * fastest, low = kKinkDown * fastest;
+  const double high = from * fastest, low = kRestickDown * fastest;
   std::vector<Restick> all;
   for (std::size_t i = 0; i < v.size();) {
-    while (i < v.size() && std::abs(v[i] - rest) < kKinkSlip * fastest) ++i;
+    while (i < v.size() && std::abs(v[i] - rest) < kRestickSlip * fastest) ++i;
     if (i == v.size()) break;
     const double sign = v[i] > rest ? 1 : -1;
     const auto reads = [&](std::size_t k) { return sign * (v[k] - rest); };
@@ -28,10 +28,10 @@ std::vector<Restick> find_resticks(std::span<const double> v, double rest, doubl
     while (end < std::min(v.size(), down + 6 * fall) && reads(end) < low) ++end;
     // A short stick ends before the velocity has grown to where it began to rest.
     end = std::min(down + 2 * fall, down + (end - down) / 3);
-    if (fall < kKinkSamples || static_cast<double>(end - down) < shortest * static_cast<double>(fall) ||
+    if (fall < kRestickSamples || static_cast<double>(end - down) < shortest * static_cast<double>(fall) ||
         end + 1 >= v.size())
       continue;
-    const std::size_t stride = std::max<std::size_t>(1, fall / kKinkMost);
+    const std::size_t stride = std::max<std::size_t>(1, fall / kRestickMost);
     Restick restick;
     restick.begin = begin, restick.stride = stride;
     std::vector<double> after;
@@ -49,9 +49,9 @@ std::vector<Restick> find_resticks(std::span<const double> v, double rest, doubl
 double rise_in_stick(std::span<const double> v, double rest, double fastest) {
   std::vector<double> rises;
   for (std::size_t i = 0; i < v.size();) {
-    while (i < v.size() && std::abs(v[i] - rest) >= kKinkSlip * fastest) ++i;
+    while (i < v.size() && std::abs(v[i] - rest) >= kRestickSlip * fastest) ++i;
     const std::size_t begin = i;
-    while (i < v.size() && std::abs(v[i] - rest) < kKinkSlip * fastest) ++i;
+    while (i < v.size() && std::abs(v[i] - rest) < kRestickSlip * fastest) ++i;
     const std::size_t eighth = (i - begin) / 8;
     if (begin == 0 || i == v.size() || eighth == 0) continue;
     double rise = 0;

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "limits.hpp"
-#include "tribofit/kinematics/health_names.hpp"
+#include "tribofit/kinematics/health.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::kinematics {

@@ -19,10 +19,10 @@ namespace tribofit::kinematics {
 /// the pull is given over, is not known.
 void make_block_of_spring(Trace& trace, std::vector<std::string>& notes);
 
-/// The lower quartile of standard errors, which is that of windows without a kink; 0 where none are known.
+/// The lower quartile of standard errors, which is that of windows without a corner; 0 where none are known.
 double usual_error(const std::vector<double>& errors);
 
-/// Samples whose velocity (of a motion alone: whose friction, too) is far less well known than most, beside the kinks
+/// Samples whose velocity (of a motion alone: whose friction, too) is far less well known than most, beside the corners
 /// of break-away and re-stick, with those whose acceleration they spoil.
 std::vector<SampleSpan> unsure_samples(const Trace& trace);
 

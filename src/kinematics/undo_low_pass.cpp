@@ -70,7 +70,7 @@ std::vector<Tail> tails_of(std::span<const double> friction, const std::vector<d
   if (periods.size() < kFewestPeriods) return tails;
   const auto length = static_cast<std::size_t>(kTailPart * median(std::move(periods)));
   if (length < kTailSamples) return tails;
-  const std::size_t every = std::max<std::size_t>(1, resticks.size() / kKinkSlips);
+  const std::size_t every = std::max<std::size_t>(1, resticks.size() / kRestickSlips);
   for (std::size_t k = 0; k < resticks.size(); k += every) {
     const double place = std::max(resticks[k], 0.0);
     const auto first = static_cast<std::size_t>(std::ceil(place + kTailGap));
@@ -163,7 +163,7 @@ FrictionLowPass find_friction_low_pass(std::span<const double> friction, const s
   double best = 0, least = std::numeric_limits<double>::infinity();
   const double longest = kTailDecay * static_cast<double>(tails.front().friction.size());
   std::vector<double> tried;
-  for (double tau = kTailFirst; tau < longest; tau *= kKinkNext) tried.push_back(tau);
+  for (double tau = kTailFirst; tau < longest; tau *= kRestickNext) tried.push_back(tau);
   std::vector<double> left(tried.size());
   run_tasks(tried.size(), threads, [&](std::size_t k) { left[k] = squares_left(tails, tried[k]); });
   for (std::size_t k = 0; k < tried.size(); ++k) {
@@ -171,7 +171,7 @@ FrictionLowPass find_friction_low_pass(std::span<const double> friction, const s
   }
   constexpr int kCuts = 16;  // to a thousandth
   const auto refined = [&](const auto& squares) {
-    return golden_section(squares, best / kKinkNext, best * kKinkNext, kCuts).at;
+    return golden_section(squares, best / kRestickNext, best * kRestickNext, kCuts).at;
   };
   const double tau = refined([&](double t) { return squares_left(tails, t, threads); });
   const Evidence evidence = evidence_of(tails, tau);

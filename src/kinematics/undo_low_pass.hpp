@@ -10,7 +10,7 @@ namespace tribofit::kinematics {
 
 /// Undoes a first-order low-pass in place: v_b = v_meas + tau dv_meas/dt, the derivative by a line through the fewest
 /// samples that leave the noise small (noise, fastest [m/s]: of the reading). Returns the samples to either side that a
-/// kink is smeared over.
+/// corner is smeared over.
 std::size_t undo_low_pass(std::span<double> velocity, double tau, double step, double noise, double fastest);
 
 /// A first-order low-pass of the friction channel.

@@ -8,7 +8,7 @@
 #include "rate_state.hpp"
 #include "report/charts/styles.hpp"
 #include "report_parts.hpp"
-#include "tribofit/kinematics/health_names.hpp"
+#include "tribofit/kinematics/health.hpp"
 
 namespace tribofit {
 namespace {

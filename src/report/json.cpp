@@ -1,5 +1,5 @@
 #include "tribofit/report/json.hpp"
-#include "tribofit/kinematics/health_names.hpp"
+#include "tribofit/kinematics/health.hpp"
 
 #include <fmt/format.h>
 

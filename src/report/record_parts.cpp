@@ -12,7 +12,7 @@
 #include "tribofit/fit/identification.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
-#include "tribofit/kinematics/health_names.hpp"
+#include "tribofit/kinematics/health.hpp"
 #include "tribofit/version.hpp"
 
 namespace tribofit {

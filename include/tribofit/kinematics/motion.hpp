@@ -148,6 +148,7 @@ struct MotionOptions {
   bool undo_bandwidth = true;
   PlateauCorrection plateau = PlateauCorrection::none;
   StickRule stick = {};
+  int threads = 1;  ///< that look at friction and velocity side by side; 0: as many as there are
   /// Of the friction channel, as other runs of the same sensor show it [s] (0: they show none); nothing: looked for.
   std::optional<UndoneDistortion> friction_low_pass = {};
 };
