@@ -7,6 +7,7 @@
 #include "health_checks.hpp"
 #include "limits.hpp"
 #include "tribofit/kinematics/health.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 // How friction and velocity lie beside each other in time.
@@ -127,9 +128,9 @@ HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, s
   if (std::abs(drift.gained) > std::max(kDriftSamples * motion.step, kSignificance * drift.std_error)) {
     item.status = Status::problem;
     item.message = fmt::format(
-        "friction falls behind the velocity by {:.2f} ms from the first third of the record to the last ({:.0f} ppm, "
+        "friction falls behind the velocity by {} ms from the first third of the record to the last ({} ppm, "
         "{} slips): their clocks drift apart; mu_k and the law's decay (alpha) are unreliable",
-        1e3 * drift.gained, 1e6 * drift.gained / drift.time, slips);
+        fixed(1e3 * drift.gained, 2), fixed(1e6 * drift.gained / drift.time, 0), slips);
     return item;
   }
   const std::optional<double> delay = delay_of(jumps, motion.step);
@@ -137,8 +138,8 @@ HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, s
     item.message = fmt::format("{}friction does not jump at re-stick ({} slips)", health_check::kNotChecked, slips);
     return item;
   }
-  item.message = fmt::format("friction jumps about {:.2f} ms {} the velocity reaches re-stick ({} slips)",
-                             1e3 * std::abs(*delay), *delay >= 0 ? "after" : "before", slips);
+  item.message = fmt::format("friction jumps about {} ms {} the velocity reaches re-stick ({} slips)",
+                             fixed(1e3 * std::abs(*delay), 2), *delay >= 0 ? "after" : "before", slips);
   if (std::abs(*delay) > std::max(kDelayWarned, kDelayWarnedSamples * motion.step)) item.status = Status::warning;
   return item;
 }

@@ -16,6 +16,7 @@
 #include "limits.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -174,9 +175,9 @@ ClockMatch followed_to_ends(ClockMatch match, const ScannedChannels& channels, c
 [[noreturn]] void refuse(const Decision& found) {
   const ClockMatch& best = found.best;
   const std::string left = fmt::format(
-      "at the best offset both share {} cycles and the motion leaves {:.1f} % of "
-      "friction unbalanced, at another one {} cycles and {:.1f} %",
-      best.cycles, 100 * best.unbalanced, found.other.cycles, 100 * found.other.unbalanced);
+      "at the best offset both share {} cycles and the motion leaves {} % of "
+      "friction unbalanced, at another one {} cycles and {} %",
+      best.cycles, fixed(100 * best.unbalanced, 1), found.other.cycles, fixed(100 * found.other.unbalanced, 1));
   throw InputError("the two records are not of one run, share too few cycles, or their cycles are too alike: " + left,
                    "give the two files of one run, or one file with both channels on one clock");
 }

@@ -8,6 +8,7 @@
 
 #include "limits.hpp"
 #include "tribofit/ingest/units.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 
 namespace tribofit::kinematics {
@@ -40,12 +41,12 @@ void subtract_zero(Trace& trace, const Instruments::ForceSensor& sensor, std::ve
       if (trace.load[i] > 0) trace.friction[i] -= sensor.zero->value / trace.load[i];
     }
     notes.push_back(
-        fmt::format("friction: declared zero {:.4g} N over the measured load subtracted", sensor.zero->value));
+        fmt::format("friction: declared zero {} N over the measured load subtracted", general(sensor.zero->value, 4)));
     return;
   }
   const double zero = zero_of_friction(sensor, trace.friction_kind, trace.conditions.load)->value;
   scale(trace.friction, 1, zero);
-  notes.push_back(fmt::format("friction: declared zero {:.4g} subtracted", zero));
+  notes.push_back(fmt::format("friction: declared zero {} subtracted", general(zero, 4)));
 }
 
 void correct_crosstalk(Trace& trace, double part) {
@@ -96,23 +97,23 @@ Ends correct_declared(Trace& trace, const Instruments& instruments, double step,
     const double delay = vibrometer.delay ? vibrometer.delay->value : 0;
     correct_delay(trace.velocity, delay, step, ends);
     if (vibrometer.sign < 0) notes.push_back("velocity: sign reversed as declared");
-    if (gain != 1) notes.push_back(fmt::format("velocity: divided by the declared gain {:.4g}", gain));
-    if (delay != 0) notes.push_back(fmt::format("velocity: moved {:.4g} ms earlier as declared", 1e3 * delay));
+    if (gain != 1) notes.push_back(fmt::format("velocity: divided by the declared gain {}", general(gain, 4)));
+    if (delay != 0) notes.push_back(fmt::format("velocity: moved {} ms earlier as declared", general(1e3 * delay, 4)));
   }
   const double gain = sensor.gain ? sensor.gain->value : 1;
   subtract_zero(trace, sensor, notes);
   scale(trace.friction, 1 / gain, 0);
-  if (gain != 1) notes.push_back(fmt::format("friction: divided by the declared gain {:.4g}", gain));
+  if (gain != 1) notes.push_back(fmt::format("friction: divided by the declared gain {}", general(gain, 4)));
   if (sensor.crosstalk) {
     correct_crosstalk(trace, sensor.crosstalk->value);
-    notes.push_back(fmt::format("friction: declared crosstalk {:.4g} subtracted", sensor.crosstalk->value));
+    notes.push_back(fmt::format("friction: declared crosstalk {} subtracted", general(sensor.crosstalk->value, 4)));
   }
   if (sensor.bandwidth) {
     // Second order with zeta = 0.7 (flat response): group delay 2 zeta / (2 pi f_0) at low frequency.
     const double delay = 2 * 0.7 / ((2 * std::numbers::pi) * sensor.bandwidth->value);
     correct_delay(trace.friction, delay, step, ends);
-    notes.push_back(fmt::format("friction: moved {:.4g} ms earlier for the declared bandwidth of {}", 1e3 * delay,
-                                frequency_text(sensor.bandwidth->value)));
+    notes.push_back(fmt::format("friction: moved {} ms earlier for the declared bandwidth of {}",
+                                general(1e3 * delay, 4), frequency_text(sensor.bandwidth->value)));
   }
   return ends;
 }
@@ -130,7 +131,7 @@ void add_sensor_mass(Trace& trace, std::span<const double> block_velocity, doubl
     const double load = !coefficient ? 1 : measured ? trace.load[i] : trace.conditions.load.value;
     if (load > 0) trace.friction[i] += mass * acceleration[i] / load;
   }
-  notes.push_back(fmt::format("friction: inertia of the declared {:.4g} kg below the sensor added", mass));
+  notes.push_back(fmt::format("friction: inertia of the declared {} kg below the sensor added", general(mass, 4)));
 }
 
 namespace {

@@ -10,6 +10,7 @@
 #include "smoothing.hpp"
 #include "statistics/local_derivatives.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/standard_error_of_mean.hpp"
 
@@ -38,8 +39,8 @@ std::size_t clean(std::vector<double>& position, const char* name, std::vector<s
 }
 
 void note_window(const char* what, std::size_t half, double step, std::vector<std::string>& notes) {
-  notes.push_back(fmt::format("{} over {} samples ({:.3g} ms)", what, 2 * half + 1,
-                              1e3 * static_cast<double>(2 * half + 1) * step));
+  notes.push_back(fmt::format("{} over {} samples ({} ms)", what, 2 * half + 1,
+                              general(1e3 * static_cast<double>(2 * half + 1) * step, 3)));
 }
 
 /// Of a drive that was not recorded: it stands still.
@@ -94,11 +95,12 @@ void balance_directions(Trace& trace, std::vector<std::string>& notes) {
   }
   const double offset = 0.5 * (forth.value + back.value);
   for (double& friction : trace.friction) friction -= offset;
-  notes.push_back(fmt::format(
-      "motion: friction was balanced between the two directions by {:+.3g} +/- {:.2g} N ({:+.3g} um of the spring): "
-      "the "
-      "zeros of the displacements are arbitrary, so asymmetric friction cannot be seen",
-      -offset, 0.5 * std::hypot(forth.std_error, back.std_error), 1e6 * offset / trace.spring.stiffness.value));
+  notes.push_back(
+      fmt::format("motion: friction was balanced between the two directions by {} +/- {} N ({} um of the spring): "
+                  "the "
+                  "zeros of the displacements are arbitrary, so asymmetric friction cannot be seen",
+                  general_with_sign(-offset, 3), general(0.5 * std::hypot(forth.std_error, back.std_error), 2),
+                  general_with_sign(1e6 * offset / trace.spring.stiffness.value, 3)));
 }
 
 double root_mean_square(const std::vector<double>& values) {
@@ -175,11 +177,11 @@ void settle_counterface(const LocalDerivatives& x, const LocalDerivatives& y, bo
     const double ground = resistance(trace.friction, x.slope), base = resistance(trace.friction, against_base);
     counterface = ground >= base ? Counterface::ground : Counterface::base;
     notes.push_back(fmt::format(
-        "motion: the mass rubs on {}: friction would drive that motion in {:.3g} % of its power, and in {:.3g} % "
+        "motion: the mass rubs on {}: friction would drive that motion in {} % of its power, and in {} % "
         "against "
         "the {} ({} --rubs-on)",
-        ground >= base ? "ground that stands still" : "the moving base", 50 * (1 - std::max(ground, base)),
-        50 * (1 - std::min(ground, base)), ground >= base ? "base" : "ground",
+        ground >= base ? "ground that stands still" : "the moving base", general(50 * (1 - std::max(ground, base)), 3),
+        general(50 * (1 - std::min(ground, base)), 3), ground >= base ? "base" : "ground",
         1 - std::max(ground, base) > kAlikePowers * (1 - std::min(ground, base)) ? "not clear: state it with"
                                                                                  : "state another with"));
   }
@@ -242,9 +244,9 @@ void make_friction_of_motion(Trace& trace, std::vector<std::string>& notes) {
   set_velocity(x, y, trace);
   balance_directions(trace, notes);
   note_window("motion: friction is -(m x'' + c (x' - y') + k (x - y)), with derivatives", half, step, notes);
-  notes.push_back(
-      fmt::format("motion: one per cent of the stated mass is {:.2g} N, one per cent of the stiffness {:.2g} N",
-                  0.01 * m * root_mean_square(terms.inertia), 0.01 * k * root_mean_square(terms.stretch)));
+  notes.push_back(fmt::format("motion: one per cent of the stated mass is {} N, one per cent of the stiffness {} N",
+                              general(0.01 * m * root_mean_square(terms.inertia), 2),
+                              general(0.01 * k * root_mean_square(terms.stretch), 2)));
   divide_by_load(trace, notes);
 }
 

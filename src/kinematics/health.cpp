@@ -11,6 +11,7 @@
 #include "limits.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/kinematics/health.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/spectrum.hpp"
 
@@ -101,10 +102,10 @@ double lowest_pass(const Band& band) {
 std::string describe(const char* name, const Band& band) {
   if (band.upper <= 0) return fmt::format("{}: too short to say", name);
   if (band.corner > 0)
-    return fmt::format("{} falls from about {} on like f^-{:.0f}, it was low-passed there", name,
-                       frequency_text(band.corner, 2), band.order);
+    return fmt::format("{} falls from about {} on like f^-{}, it was low-passed there", name,
+                       frequency_text(band.corner, 2), fixed(band.order, 0));
   if (band.filtered)
-    return fmt::format("{} falls to {:.1e} of its largest line, filtered above about {}", name, band.floor,
+    return fmt::format("{} falls to {} of its largest line, filtered above about {}", name, general(band.floor, 2),
                        frequency_text(band.upper, 3));
   return fmt::format("{} stands above its noise up to {}", name, frequency_text(band.upper, 3));
 }
@@ -114,27 +115,25 @@ std::string describe(const char* name, const Band& band) {
 HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double> declared, bool undone, bool sticks) {
   HealthItem item{health_check::kSaggingPlateau, Status::ok, health_check::not_checked("no stick plateau to look at")};
   if (declared) {
-    item.message = fmt::format("the declared high-pass of {:.3g} Hz is corrected", *declared);
+    item.message = fmt::format("the declared high-pass of {} Hz is corrected", general(*declared, 3));
   } else if (undone) {
     item.status = Status::warning;
     item.message = fmt::format(
-        "the plateau sags like that of a first-order high-pass at {:.3f} +/- {:.4f} Hz ({} plateaus); "
+        "the plateau sags like that of a first-order high-pass at {} +/- {} Hz ({} plateaus); "
         "corrected",
-        estimate.corner, estimate.std_error, estimate.plateaus);
+        fixed(estimate.corner, 3), fixed(estimate.std_error, 4), estimate.plateaus);
   } else if (estimate.significant) {
     item.status = Status::problem;
-    item.message =
-        fmt::format("the plateau sags like that of a first-order high-pass at {:.3f} +/- {:.4f} Hz; not corrected",
-                    estimate.corner, estimate.std_error);
+    item.message = fmt::format("the plateau sags like that of a first-order high-pass at {} +/- {} Hz; not corrected",
+                               fixed(estimate.corner, 3), fixed(estimate.std_error, 4));
   } else if (estimate.creeping) {
     item.message = fmt::format(
-        "the plateau falls faster towards break-away (as a high-pass: {:.3f} Hz in its first half, "
-        "{:.3f} Hz in its second): creep of the contact, no high-pass",
-        estimate.first_half, estimate.second_half);
+        "the plateau falls faster towards break-away (as a high-pass: {} Hz in its first half, "
+        "{} Hz in its second): creep of the contact, no high-pass",
+        fixed(estimate.first_half, 3), fixed(estimate.second_half, 3));
   } else if (estimate.plateaus >= kFewestForMedian) {
-    item.message =
-        fmt::format("plateaus are level: a high-pass would have its corner at {:.4f} +/- {:.4f} Hz ({} plateaus)",
-                    estimate.corner, estimate.std_error, estimate.plateaus);
+    item.message = fmt::format("plateaus are level: a high-pass would have its corner at {} +/- {} Hz ({} plateaus)",
+                               fixed(estimate.corner, 4), fixed(estimate.std_error, 4), estimate.plateaus);
   } else if (sticks) {
     item.message = health_check::not_checked("too few plateaus to look for a high-pass");
   }
@@ -223,7 +222,7 @@ HealthItem check_revolutions(const Motion& motion) {
     }
   }
   const double revolutions = std::abs(angle) / (2 * std::numbers::pi);
-  item.message = fmt::format("{:.2f} revolutions recorded", revolutions);
+  item.message = fmt::format("{} revolutions recorded", fixed(revolutions, 2));
   if (revolutions < kRevolutionsOfAngle) {
     item.status = Status::warning;
     item.message += ": effects of the disc angle need two";
@@ -243,9 +242,9 @@ HealthItem check_speed_ripple(const Motion& motion, const RippleEstimate& estima
     return item;
   }
   item.message =
-      fmt::format("the plateau follows the disc angle by {:.2f} % {} a revolution (+/- {:.2f} %, {} plateaus)",
-                  100 * ripple.amplitude, ripple.order == 1 ? "once" : fmt::format("{} times", ripple.order),
-                  100 * ripple.amplitude_std_error, estimate.plateaus);
+      fmt::format("the plateau follows the disc angle by {} % {} a revolution (+/- {} %, {} plateaus)",
+                  fixed(100 * ripple.amplitude, 2), ripple.order == 1 ? "once" : fmt::format("{} times", ripple.order),
+                  fixed(100 * ripple.amplitude_std_error, 2), estimate.plateaus);
   if (!estimate.significant) return item;
   item.status = Status::warning;
   item.message += motion.speed_ripple.order > 0 ? "; the speed of the disc ripples; corrected"
@@ -257,8 +256,8 @@ HealthItem check_run_up(const Motion& motion, bool trim, std::size_t found) {
   HealthItem item{health_check::kRunUp, Status::ok, "the record begins at full speed"};
   if (found == 0) return item;
   const double time = static_cast<double>(found) * motion.step;
-  item.message = fmt::format("the first {:.3g} s, before the plateau is within 2 % of its final value, {}", time,
-                             trim ? "are trimmed" : "are kept");
+  item.message = fmt::format("the first {} s, before the plateau is within 2 % of its final value, {}",
+                             general(time, 3), trim ? "are trimmed" : "are kept");
   if (!trim) item.status = Status::warning;
   return item;
 }
@@ -268,9 +267,10 @@ HealthItem check_plateau_speed(const Motion& motion, double plateau, bool speed_
   HealthItem item{health_check::kPlateauSpeed, Status::ok,
                   health_check::not_checked("the record has no stick plateau")};
   const auto compare = [&](double block, double disc, const char* origin) {
-    item.message = fmt::format("plateau of v_b {:.4g} mm/s, {} {:.4g} mm/s", 1e3 * block, origin, 1e3 * disc);
+    item.message =
+        fmt::format("plateau of v_b {} mm/s, {} {} mm/s", general(1e3 * block, 4), origin, general(1e3 * disc, 4));
     const double error = disc == 0 ? std::numeric_limits<double>::infinity() : block / disc - 1;
-    if (disc != 0) item.message += fmt::format(": {:+.1f} %", 100 * error);
+    if (disc != 0) item.message += fmt::format(": {} %", with_sign(100 * error, 1));
     if (std::abs(error) > kSettled) item.status = std::abs(error) > kFarFromDisc ? Status::problem : Status::warning;
   };
   if (recorded) {
@@ -281,12 +281,12 @@ HealthItem check_plateau_speed(const Motion& motion, double plateau, bool speed_
   if (!motion.sticks) return item;
   const bool recorded_speed = !motion.disc_velocity.empty() && motion.speed_ripple.order == 0;
   if (motion.velocity_kind == VelocityKind::relative || recorded_speed) {
-    item.message = fmt::format("v_r rests at {:.3g} mm/s in stick", 1e3 * motion.plateau_velocity);
+    item.message = fmt::format("v_r rests at {} mm/s in stick", general(1e3 * motion.plateau_velocity, 3));
     return item;
   }
   if (!speed_was_stated) {
-    item.message = fmt::format("speed taken from the plateau of v_b: omega r = {:.4g} mm/s", 1e3 * plateau);
-    if (radius_known) item.message += fmt::format(", {:.4g} rpm", motion.conditions.speed.value / kRpm);
+    item.message = fmt::format("speed taken from the plateau of v_b: omega r = {} mm/s", general(1e3 * plateau, 4));
+    if (radius_known) item.message += fmt::format(", {} rpm", general(motion.conditions.speed.value / kRpm, 4));
     return item;
   }
   if (motion.kind == RecordKind::spring_slider) {

@@ -13,6 +13,7 @@
 #include "recording_faults.hpp"
 #include "statistics/piecewise_lines.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::kinematics {
@@ -110,7 +111,7 @@ OneWay one_way(const Trace& trace, std::vector<LoadPointPhase> phases, std::vect
   }
   const double turned = phases[turns.front()].begin;
   if (time_of(last) - time_of(first) < kLeastOneWay * (end - trace.time.front()))
-    throw InputError(fmt::format("the load point turns round at {:.6g} s", turned),
+    throw InputError(fmt::format("the load point turns round at {} s", general(turned, 6)),
                      "velocity steps have one direction: cut the record, or read it as --kind sliding",
                      {trace.path, 0, ""});
   OneWay out;
@@ -120,9 +121,9 @@ OneWay one_way(const Trace& trace, std::vector<LoadPointPhase> phases, std::vect
   out.phases.assign(phases.begin() + static_cast<std::ptrdiff_t>(first),
                     phases.begin() + static_cast<std::ptrdiff_t>(last));
   notes.push_back(
-      fmt::format("the load point turns round at {:.6g} s: only the record from {:.6g} s to {:.6g} s, in "
+      fmt::format("the load point turns round at {} s: only the record from {} s to {} s, in "
                   "which it goes one way, is used",
-                  turned, time_of(first), time_of(last)));
+                  general(turned, 6), general(time_of(first), 6), general(time_of(last), 6)));
   return out;
 }
 
@@ -171,8 +172,8 @@ void leave_out_faults(Trace& trace, Motion& motion) {
               motion.faults.begin() + static_cast<std::ptrdiff_t>(span.end), SampleFault::friction);
   }
   motion.notes.push_back(fmt::format(
-      "friction: {} {} left out, the first at {:.6g} s: far from all beside {}, or one value again and again", samples,
-      samples == 1 ? "sample" : "samples", trace.time[spans.front().begin], samples == 1 ? "it" : "them"));
+      "friction: {} {} left out, the first at {} s: far from all beside {}, or one value again and again", samples,
+      samples == 1 ? "sample" : "samples", general(trace.time[spans.front().begin], 6), samples == 1 ? "it" : "them"));
 }
 
 /// Friction that opposes sliding is positive.

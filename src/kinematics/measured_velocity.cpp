@@ -7,6 +7,7 @@
 #include "limits.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/kinematics/health.hpp"
+#include "tribofit/output/digits.hpp"
 
 // A v_r that was measured must be zero in stick, and omega r on average: the block goes nowhere.
 
@@ -39,8 +40,9 @@ namespace {
 /// Where nothing seems to stick, which is what a wrong zero makes of stick, the mean alone is held against omega r.
 HealthItem check_mean(const Motion& motion) {
   const double mean = mean_of(motion.relative_velocity), disc = motion.constant_disc_velocity;
-  HealthItem item{health_check::kPlateauSpeed, HealthItem::Status::ok,
-                  fmt::format("v_r is {:.4g} mm/s on average, omega r is {:.4g} mm/s", 1e3 * mean, 1e3 * disc)};
+  HealthItem item{
+      health_check::kPlateauSpeed, HealthItem::Status::ok,
+      fmt::format("v_r is {} mm/s on average, omega r is {} mm/s", general(1e3 * mean, 4), general(1e3 * disc, 4))};
   if (std::abs(mean / disc - 1) < kGainOff) return item;
   item.status = HealthItem::Status::problem;
   item.message += std::abs(mean / disc) < kGainOff
@@ -56,7 +58,7 @@ HealthItem check_measured_velocity(const Motion& motion, const Plateaus& plateau
   if (!motion.sticks) return check_mean(motion);
   const double rest = motion.plateau_velocity;
   HealthItem item{health_check::kPlateauSpeed, Status::ok,
-                  fmt::format("v_r rests at {:.3g} mm/s in stick", 1e3 * rest)};
+                  fmt::format("v_r rests at {} mm/s in stick", general(1e3 * rest, 3))};
   const bool is_off = std::abs(rest) > std::max(kRestNoise * motion.velocity_noise / 2, kZeroPart * plateaus.depth);
   if (is_off) item.status = Status::problem;
   if (plateaus.runs.size() < kFewestPeriods) return item;
@@ -67,24 +69,24 @@ HealthItem check_measured_velocity(const Motion& motion, const Plateaus& plateau
   }
   const double gain = (mean.relative - rest) / mean.disc;
   const bool looks_like_block = is_off && std::abs(gain + 1) < kGainOff;
-  item.message +=
-      fmt::format(" and is {:.4g} mm/s on average, omega r is {:.4g} mm/s", 1e3 * mean.relative, 1e3 * mean.disc);
+  item.message += fmt::format(" and is {} mm/s on average, omega r is {} mm/s", general(1e3 * mean.relative, 4),
+                              general(1e3 * mean.disc, 4));
   if (looks_like_block) {
     item.message += ": this is the velocity of the block; name the column v_b";
   } else if (std::abs(gain - 1) > kGainOff) {
     item.status = Status::problem;
     item.message += fmt::format(
-        ": v_r reads {:.3g} times the truth, or radius or speed are wrong; the law's decay (alpha) is "
+        ": v_r reads {} times the truth, or radius or speed are wrong; the law's decay (alpha) is "
         "unreliable",
-        gain);
+        general(gain, 3));
   } else if (is_off) {
     item.message += ": its zero is off, and the law's decay (alpha) with it";
   } else if (std::abs(gain - 1) > kGainWarned) {
     item.status = Status::warning;
     item.message += fmt::format(
-        ": v_r may read {:.3g} times the truth, and the law's decay (alpha) with it, or radius or speed are "
+        ": v_r may read {} times the truth, and the law's decay (alpha) with it, or radius or speed are "
         "off",
-        gain);
+        general(gain, 3));
   }
   return item;
 }

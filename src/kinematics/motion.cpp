@@ -17,6 +17,7 @@
 #include "ripple.hpp"
 #include "spring_slider.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/stop.hpp"
 
@@ -168,9 +169,9 @@ void MotionStages::undo_ripple() {
   kinematics::flatten(search_, ripple_, kinematics::steady_speed(trace_), trace_.time);
   plateau_ = kinematics::final_level(search_.plateaus);
   motion_.notes.push_back(
-      fmt::format("disc: its speed follows its angle by {:.2f} +/- {:.2f} %, {} a revolution ({} plateaus); omega r "
+      fmt::format("disc: its speed follows its angle by {} +/- {} %, {} a revolution ({} plateaus); omega r "
                   "follows it",
-                  100 * ripple.amplitude, 100 * ripple.amplitude_std_error,
+                  fixed(100 * ripple.amplitude, 2), fixed(100 * ripple.amplitude_std_error, 2),
                   ripple.order == 1 ? "once" : fmt::format("{} times", ripple.order), ripple_.plateaus));
 }
 

@@ -9,6 +9,7 @@
 #include "motion_stages.hpp"
 #include "net_displacement.hpp"
 #include "tribofit/ingest/units.hpp"
+#include "tribofit/output/digits.hpp"
 #include "undo_low_pass.hpp"
 
 // The stages of a motion that undo what its channels did to their readings.
@@ -48,8 +49,8 @@ void MotionStages::undo_zero_drift() {
   if (zero_drift_.value == 0) return;
   const double middle = 0.5 * (trace_.time.front() + trace_.time.back());
   for (std::size_t i = 0; i < trace_.size(); ++i) trace_.velocity[i] -= zero_drift_.value * (trace_.time[i] - middle);
-  motion_.notes.push_back(fmt::format("velocity: its zero drifted by {:.4g} mm/s over the record, taken off",
-                                      1e3 * zero_drift_.value * trace_.duration()));
+  motion_.notes.push_back(fmt::format("velocity: its zero drifted by {} mm/s over the record, taken off",
+                                      general(1e3 * zero_drift_.value * trace_.duration(), 4)));
   find_plateau();
   positions_ = {};
 }
@@ -69,7 +70,8 @@ void MotionStages::undo_zero() {
   if (zero_.kind != BlockZero::Kind::zero || !options_.undo_distortions) return;
   motion_.velocity_zero = {zero_.mean.value, zero_.mean.std_error};
   for (double& v : trace_.velocity) v -= zero_.mean.value;
-  motion_.notes.push_back(fmt::format("velocity: its zero was off by {:.4g} mm/s, taken off", 1e3 * zero_.mean.value));
+  motion_.notes.push_back(
+      fmt::format("velocity: its zero was off by {} mm/s, taken off", general(1e3 * zero_.mean.value, 4)));
   find_plateau();
 }
 
@@ -91,8 +93,9 @@ void MotionStages::undo_compression() {
   motion_.compression = found.part;
   motion_.fastest_velocity = found.fastest;
   for (double& v : trace_.velocity) v = decompressed(v, found.part.value, found.fastest);
-  motion_.notes.push_back(fmt::format("velocity: its gain is {:.3g} % {} at the highest speed; corrected",
-                                      100 * std::abs(found.part.value), found.part.value > 0 ? "less" : "more"));
+  motion_.notes.push_back(fmt::format("velocity: its gain is {} % {} at the highest speed; corrected",
+                                      general(100 * std::abs(found.part.value), 3),
+                                      found.part.value > 0 ? "less" : "more"));
   find_plateau();
 }
 
@@ -149,8 +152,8 @@ void MotionStages::undo_clock_drift() {
       follow_clock(trace_.velocity, clocks_.drift.value, joined ? clocks_.at_start : 0, low_pass_.resticks);
   if (joined) motion_.clock_offset_std_error = 0.5 * trace_.duration() * clocks_.drift.std_error;
   lost_ = {std::max(lost_.head, ends.head), std::max(lost_.tail, ends.tail)};
-  motion_.notes.push_back(
-      fmt::format("velocity: moved by {:.3g} ppm of the time, to the clock of friction", 1e6 * clocks_.drift.value));
+  motion_.notes.push_back(fmt::format("velocity: moved by {} ppm of the time, to the clock of friction",
+                                      general(1e6 * clocks_.drift.value, 3)));
   find_plateau();
 }
 

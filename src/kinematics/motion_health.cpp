@@ -11,6 +11,7 @@
 #include "plateau_ratio.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/kinematics/health.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -84,9 +85,9 @@ HealthItem MotionStages::check_band() const {
   if (friction_fall_ > 0) {
     item.status = std::max(item.status, HealthItem::Status::warning);
     item.message += fmt::format(
-        "; friction takes {:.2g} ms to fall at re-stick: behind a low-pass at about {}, or from a contact that yields; "
+        "; friction takes {} ms to fall at re-stick: behind a low-pass at about {}, or from a contact that yields; "
         "what a filter of higher order rounds off (mu_s, alpha) is not corrected but for its delay",
-        1e3 * friction_fall_, frequency_text(kRiseOfLowPass / friction_fall_));
+        general(1e3 * friction_fall_, 2), frequency_text(kRiseOfLowPass / friction_fall_));
   }
   const std::vector<StickPlateau>& runs = search_.plateaus.runs;
   std::vector<double> slips;
@@ -97,9 +98,9 @@ HealthItem MotionStages::check_band() const {
   if (samples >= kFewSlipSamples) return item;
   item.status = std::max(item.status, HealthItem::Status::warning);
   item.message += fmt::format(
-      "; a slip has only {:.0f} samples: where each is a mean over its interval, mu_k and the law's decay (alpha) are "
+      "; a slip has only {} samples: where each is a mean over its interval, mu_k and the law's decay (alpha) are "
       "unreliable",
-      samples);
+      fixed(samples, 0));
   return item;
 }
 
@@ -109,9 +110,9 @@ HealthItem MotionStages::check_delay() const {
   if (!drift.any()) return item;
   item.status = std::max(item.status, HealthItem::Status::warning);
   item.message += fmt::format(
-      "; friction fell behind the velocity by {:.2f} +/- {:.2f} ppm of the time ({} slips), "
+      "; friction fell behind the velocity by {} +/- {} ppm of the time ({} slips), "
       "their clocks drift apart; corrected",
-      1e6 * drift.value, 1e6 * drift.std_error, clocks_.slips);
+      fixed(1e6 * drift.value, 2), fixed(1e6 * drift.std_error, 2), clocks_.slips);
   return item;
 }
 
@@ -129,8 +130,8 @@ HealthItem MotionStages::check_level() const {
   kinematics::add_zero(zero_, speed_was_stated_, motion_.compression.value, item);
   if (zero_drift_.value == 0) return item;
   item.status = std::max(item.status, HealthItem::Status::warning);
-  item.message += fmt::format("; the zero of the velocity drifts by {:.3g} mm/s over the record; corrected",
-                              1e3 * zero_drift_.value * motion_.step * static_cast<double>(motion_.size()));
+  item.message += fmt::format("; the zero of the velocity drifts by {} mm/s over the record; corrected",
+                              general(1e3 * zero_drift_.value * motion_.step * static_cast<double>(motion_.size()), 3));
   return item;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "limits.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
@@ -143,13 +144,13 @@ void add_zero(const BlockZero& zero, bool speed_was_stated, double compression, 
       is_zero || compression != 0 ? std::max(item.status, HealthItem::Status::warning) : HealthItem::Status::problem;
   const bool is_guess = std::abs(compression) > kSureOfCompression;
   if (is_guess && !is_zero) item.status = HealthItem::Status::problem;
-  item.message +=
-      fmt::format("; the block has no net displacement, but its mean velocity is {:.3g} mm/s: ", 1e3 * zero.mean.value);
+  item.message += fmt::format("; the block has no net displacement, but its mean velocity is {} mm/s: ",
+                              general(1e3 * zero.mean.value, 3));
   item.message +=
       is_zero ? "the velocity has a zero error; corrected"
       : compression != 0
-          ? fmt::format("the velocity channel is nonlinear: the gain is {:.3g} % {} at the highest speed; corrected{}",
-                        100 * std::abs(compression), compression > 0 ? "less" : "more",
+          ? fmt::format("the velocity channel is nonlinear: the gain is {} % {} at the highest speed; corrected{}",
+                        general(100 * std::abs(compression), 3), compression > 0 ? "less" : "more",
                         is_guess ? " with a cubic characteristic, mu_k and the law's decay (alpha) are unreliable" : "")
       : speed_was_stated
           ? "the velocity channel is nonlinear, or samples are missing; mu_k and the law's decay (alpha) are "

@@ -9,6 +9,7 @@
 
 #include "limits.hpp"
 #include "statistics/reductions.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/standard_error_of_mean.hpp"
@@ -164,8 +165,8 @@ void correct_plateau(Motion& motion, PlateauCorrection correction) {
     motion.plateau_velocity += shift * constant;
     for (double& v : motion.disc_velocity) v *= ratio;
     motion.constant_disc_velocity *= ratio;
-    motion.notes.push_back(fmt::format("disc: omega r times {:.4f} +/- {:.4f}, as the plateau of v_b says (radius)",
-                                       ratio, motion.plateau_ratio_std_error));
+    motion.notes.push_back(fmt::format("disc: omega r times {} +/- {}, as the plateau of v_b says (radius)",
+                                       fixed(ratio, 4), fixed(motion.plateau_ratio_std_error, 4)));
     return;
   }
   const double lost = ratio - in_motion, part = 1 / ratio;
@@ -175,8 +176,8 @@ void correct_plateau(Motion& motion, PlateauCorrection correction) {
   }
   motion.plateau_velocity = corrected(motion.plateau_velocity, constant);
   motion.velocity_noise *= part;
-  motion.notes.push_back(fmt::format("velocity: divided by {:.4f} +/- {:.4f}, as the plateau of v_b says (gain)", ratio,
-                                     motion.plateau_ratio_std_error));
+  motion.notes.push_back(fmt::format("velocity: divided by {} +/- {}, as the plateau of v_b says (gain)",
+                                     fixed(ratio, 4), fixed(motion.plateau_ratio_std_error, 4)));
 }
 
 }  // namespace tribofit

@@ -9,6 +9,7 @@
 #include "limits.hpp"
 #include "saturation.hpp"
 #include "tribofit/kinematics/health.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -147,10 +148,10 @@ const std::vector<SampleSpan>* add_range_end(const Units& channel, const EndRuns
   const std::size_t count = std::max(end.count, held ? end.saturation.count : 0);
   const double share = static_cast<double>(count) / static_cast<double>(samples);
   item.status = share > kMuchClipped ? Status::problem : Status::warning;
-  item.message = fmt::format(
-      "{} stays at {:.4g}{} for {} samples ({:.3g} %): the range was too small; they are not used, {} unreliable",
-      channel.name, channel.factor * (repeats ? end.at : end.saturation.level), channel.unit, count, 100 * share,
-      unreliable);
+  item.message =
+      fmt::format("{} stays at {}{} for {} samples ({} %): the range was too small; they are not used, {} unreliable",
+                  channel.name, general(channel.factor * (repeats ? end.at : end.saturation.level), 4), channel.unit,
+                  count, general(100 * share, 3), unreliable);
   return held ? &end.saturation.spans : &end.spans;
 }
 
@@ -160,17 +161,18 @@ void add_slew(const Units& channel, double rate, HealthItem& item) {
   const bool is_first = item.status == Status::ok;
   item.status = Status::problem;
   item.message = fmt::format(
-      "{}{}{} changes by at most {:.3g}{} per second: the slew rate of its amplifier limits it; mu_s, mu_k and the "
+      "{}{}{} changes by at most {}{} per second: the slew rate of its amplifier limits it; mu_s, mu_k and the "
       "law's decay (alpha) are unreliable",
-      is_first ? "" : item.message, is_first ? "" : "; ", channel.name, channel.factor * rate, channel.unit);
+      is_first ? "" : item.message, is_first ? "" : "; ", channel.name, general(channel.factor * rate, 3),
+      channel.unit);
 }
 
 void compare_with_declared(double largest_velocity, const Instruments& instruments, HealthItem& item) {
   const auto& declared = instruments.vibrometer.range;
   if (!declared || !(largest_velocity > 0) || largest_velocity < kAtDeclaredRange * declared->value) return;
   item.status = Status::warning;
-  item.message = fmt::format("velocity reaches {:.4g} mm/s, the declared range is {:.4g} mm/s", 1e3 * largest_velocity,
-                             1e3 * declared->value);
+  item.message = fmt::format("velocity reaches {} mm/s, the declared range is {} mm/s",
+                             general(1e3 * largest_velocity, 4), general(1e3 * declared->value, 4));
 }
 
 struct Gaps {
@@ -252,13 +254,14 @@ HealthItem check_drop_outs(const Trace& trace, const SpoiltSamples& spoilt, cons
   const std::vector<std::string>& spoilt_by = spoilt.sentences();
   const SampleSpan& still = spoilt.longest_still();
   HealthItem item{health_check::kDropOuts, Status::ok,
-                  fmt::format("none in {} samples, {:.4g} s", n, trace.duration())};
+                  fmt::format("none in {} samples, {} s", n, general(trace.duration(), 4))};
   if (still.size() >= kShortestFrozen && static_cast<double>(still.size()) > kMuchFrozen * static_cast<double>(n) &&
       still.size() < n) {
     item.status = Status::problem;
-    item.message = fmt::format("both channels do not change from {:.4g} s for {:.4g} s ({:.3g} % of the record)",
-                               trace.time[still.begin], trace.time[still.end - 1] - trace.time[still.begin],
-                               100 * static_cast<double>(still.size()) / static_cast<double>(n));
+    item.message = fmt::format("both channels do not change from {} s for {} s ({} % of the record)",
+                               general(trace.time[still.begin], 4),
+                               general(trace.time[still.end - 1] - trace.time[still.begin], 4),
+                               general(100 * static_cast<double>(still.size()) / static_cast<double>(n), 3));
     for (const std::string& sentence : spoilt_by) item.message += "; " + sentence;
     return item;
   }
@@ -269,15 +272,15 @@ HealthItem check_drop_outs(const Trace& trace, const SpoiltSamples& spoilt, cons
   item.status = many ? Status::problem : Status::warning;
   item.message.clear();
   if (gaps.count > 0) {
-    item.message = fmt::format("{} gaps in time (longest {:.3g} ms at a sampling interval of {:.3g} ms)", gaps.count,
-                               1e3 * gaps.longest, 1e3 * step);
+    item.message = fmt::format("{} gaps in time (longest {} ms at a sampling interval of {} ms)", gaps.count,
+                               general(1e3 * gaps.longest, 3), general(1e3 * step, 3));
   }
   for (const std::string& sentence : spoilt_by) item.message += (item.message.empty() ? "" : "; ") + sentence;
   if (loses) {
     item.message += fmt::format(
-        "{}the velocity jumps {} times without a gap in time ({:.3g} % of the fast intervals): samples were lost "
+        "{}the velocity jumps {} times without a gap in time ({} % of the fast intervals): samples were lost "
         "and the time column was regenerated; the frequency and all times are unreliable",
-        item.message.empty() ? "" : "; ", lost.jumps, 100 * lost.part);
+        item.message.empty() ? "" : "; ", lost.jumps, general(100 * lost.part, 3));
   }
   return item;
 }

@@ -11,6 +11,7 @@
 #include "limits.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/kinematics/health.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::kinematics {
@@ -74,17 +75,17 @@ HealthItem check_resolution(const RecordedSteps& steps, FrictionKind kind, doubl
   };
   if (steps.velocity > 2 * noise && steps.velocity > 0) {
     coarse(
-        fmt::format("velocity is recorded in steps of {:.3g} mm/s, coarser than its noise: the rounding is carried "
+        fmt::format("velocity is recorded in steps of {} mm/s, coarser than its noise: the rounding is carried "
                     "as noise, and a smaller gap between plateau and omega r is not named",
-                    1e3 * steps.velocity));
+                    general(1e3 * steps.velocity, 3)));
     if (steps.velocity > kTooCoarse * steps.largest_velocity) {
       item.status = HealthItem::Status::problem;
       item.message += "; the law's decay (alpha) is unreliable, use a smaller range of the vibrometer";
     }
   }
   if (steps.friction > kCoarseStep * steps.friction_range) {
-    coarse(fmt::format("friction is recorded in steps of {:.3g}{}: the rounding is part of the noise floor",
-                       steps.friction, kind == FrictionKind::force ? " N" : ""));
+    coarse(fmt::format("friction is recorded in steps of {}{}: the rounding is part of the noise floor",
+                       general(steps.friction, 3), kind == FrictionKind::force ? " N" : ""));
     if (steps.friction > kTooCoarseFriction * steps.friction_range) {
       item.status = HealthItem::Status::problem;
       item.message += "; mu_k and the law's decay (alpha) are unreliable";

@@ -8,6 +8,7 @@
 
 #include "limits.hpp"
 #include "tribofit/kinematics/health.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::kinematics {
@@ -124,13 +125,14 @@ HealthItem check_speed_steps(const Motion& motion, const std::vector<SpeedLevel>
   HealthItem item{health_check::kPlateauSpeed, HealthItem::Status::warning, "the speed of the disc steps: omega r is "};
   double nearest = std::abs(levels.front().level - stated);
   for (std::size_t k = 0; k < levels.size(); ++k) {
-    if (k > 0) item.message += fmt::format(", from {:.4g} s on ", static_cast<double>(levels[k].begin) * blocks.step);
-    item.message += fmt::format("{:.4g} mm/s", 1e3 * levels[k].level);
+    if (k > 0)
+      item.message += fmt::format(", from {} s on ", general(static_cast<double>(levels[k].begin) * blocks.step, 4));
+    item.message += fmt::format("{} mm/s", general(1e3 * levels[k].level, 4));
     nearest = std::min(nearest, std::abs(levels[k].level - stated));
   }
   item.message += " (taken from the plateaus)";
   if (stated == 0) return item;
-  item.message += fmt::format("; stated is {:.4g} mm/s", 1e3 * stated);
+  item.message += fmt::format("; stated is {} mm/s", general(1e3 * stated, 4));
   if (nearest > kSettled * std::abs(stated)) item.status = HealthItem::Status::problem;
   if (motion.conditions.speed.known()) item.message += ", give a column with the speed";
   return item;

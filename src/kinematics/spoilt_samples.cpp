@@ -7,6 +7,7 @@
 
 #include "limits.hpp"
 #include "tribofit/kinematics/motion.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit::kinematics {
@@ -76,9 +77,9 @@ void SpoiltSamples::clean(std::vector<double>& channel, ChannelOutline& outline,
   if (!faults.markers.empty()) {
     const double value = channel[faults.markers.front().begin];
     const bool is_velocity = kind == SampleFault::velocity;
-    sentences_.push_back(fmt::format("{} has {}, the first {:.4g}{} (left out)", name,
+    sentences_.push_back(fmt::format("{} has {}, the first {}{} (left out)", name,
                                      counted(samples_of(faults.markers), "marker value"),
-                                     is_velocity ? 1e3 * value : value, is_velocity ? " mm/s" : ""));
+                                     general(is_velocity ? 1e3 * value : value, 4), is_velocity ? " mm/s" : ""));
   }
   if (!faults.spikes.empty()) {
     spikes_ += faults.spikes.size();
@@ -89,17 +90,17 @@ void SpoiltSamples::clean(std::vector<double>& channel, ChannelOutline& outline,
     const std::size_t samples = samples_of(faults.frozen);
     frozen_ += samples;
     sentences_.push_back(
-        fmt::format("{} repeats one value in {} ({:.3g} % of the record, left out)", name,
+        fmt::format("{} repeats one value in {} ({} % of the record, left out)", name,
                     faults.frozen.size() == 1 ? "a stretch" : fmt::format("{} stretches", faults.frozen.size()),
-                    100 * static_cast<double>(samples) / static_cast<double>(size_)));
+                    general(100 * static_cast<double>(samples) / static_cast<double>(size_), 3)));
   }
   if (!faults.excursions.empty()) {
     const std::size_t samples = samples_of(faults.excursions);
     frozen_ += samples;
-    sentences_.push_back(
-        fmt::format("{} jumps away and back {} times within few samples, as a laser does that loses its "
-                    "reflection ({:.3g} % of the record, left out)",
-                    name, faults.excursions.size(), 100 * static_cast<double>(samples) / static_cast<double>(size_)));
+    sentences_.push_back(fmt::format(
+        "{} jumps away and back {} times within few samples, as a laser does that loses its "
+        "reflection ({} % of the record, left out)",
+        name, faults.excursions.size(), general(100 * static_cast<double>(samples) / static_cast<double>(size_), 3)));
   }
   for (const auto* spans : {&faults.markers, &faults.spikes, &faults.frozen, &faults.excursions}) {
     bridge(*spans, channel);
@@ -135,8 +136,8 @@ void SpoiltSamples::add_standstill(const PlateauSearch& search, double plateau, 
       // The machine stops and starts again over a cycle or so.
       const auto beside = static_cast<std::size_t>(period) * length;
       mark({{span.begin - std::min(span.begin, beside), std::min(size_, span.end + beside)}}, SampleFault::any);
-      sentences_.push_back(fmt::format("the machine stands still from {:.4g} s to {:.4g} s (left out)",
-                                       trace.time[span.begin], trace.time[span.end - 1]));
+      sentences_.push_back(fmt::format("the machine stands still from {} s to {} s (left out)",
+                                       general(trace.time[span.begin], 4), general(trace.time[span.end - 1], 4)));
     }
     begin = end + 1;
   }

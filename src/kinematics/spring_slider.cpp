@@ -11,6 +11,7 @@
 #include "statistics/local_derivatives.hpp"
 #include "statistics/smoothed_derivatives.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::kinematics {
@@ -30,7 +31,7 @@ double newtons_per_unit(Trace& trace, std::vector<std::string>& notes) {
   Condition& load = trace.conditions.load;
   if (!load.known() && trace.spring.mass.known()) {
     load = {trace.spring.mass.value * kGravity, "mass"};
-    notes.push_back(fmt::format("no load is known: the slider presses by its weight, {:.4g} N", load.value));
+    notes.push_back(fmt::format("no load is known: the slider presses by its weight, {} N", general(load.value, 4)));
   }
   if (load.known()) return load.value;
   throw InputError("the pull of the spring is given over the load, which is not known",
@@ -42,9 +43,9 @@ std::string contradiction(const SpringDrive& spring, double frequency_found) {
   const double stated = std::sqrt(spring.stiffness.value / spring.mass.value), turn = 2 * std::numbers::pi;
   if (!(frequency_found > 0) || std::abs(frequency_found / stated - 1) < kFrequencyAgrees) return {};
   return fmt::format(
-      "spring: the steepest fall of the pull is that of {:.3g} Hz, stiffness and mass say {:.3g} Hz: one of the two, "
+      "spring: the steepest fall of the pull is that of {} Hz, stiffness and mass say {} Hz: one of the two, "
       "or the load, is another",
-      frequency_found / turn, stated / turn);
+      general(frequency_found / turn, 3), general(stated / turn, 3));
 }
 
 /// Whether the slider slips, sample by sample, as its velocity shows it.
@@ -140,16 +141,17 @@ void make_block_of_spring(Trace& trace, std::vector<std::string>& notes) {
   }
   smooth_alike(pull, raw, half, unit, trace);
   notes.push_back(
-      fmt::format("spring: v_b is the slope of the pull over the stiffness, over {} samples ({:.3g} ms), "
+      fmt::format("spring: v_b is the slope of the pull over the stiffness, over {} samples ({} ms), "
                   "in slips with acceleration and friction as means over the same",
-                  2 * half + 1, 1e3 * static_cast<double>(2 * half + 1) * step));
+                  2 * half + 1, general(1e3 * static_cast<double>(2 * half + 1) * step, 3)));
   if (!has_mass && found > 0) {
     notes.push_back(fmt::format(
-        "spring: the steepest fall of the pull is that of {:.3g} Hz, which with the stiffness is a mass of {:.3g} g",
-        found / (2 * std::numbers::pi), 1e3 * spring.stiffness.value / (found * found)));
+        "spring: the steepest fall of the pull is that of {} Hz, which with the stiffness is a mass of {} g",
+        general(found / (2 * std::numbers::pi), 3), general(1e3 * spring.stiffness.value / (found * found), 3)));
   }
   if (has_mass && !contradiction(spring, found).empty()) notes.push_back(contradiction(spring, found));
-  if (has_mass) notes.push_back(fmt::format("spring: inertia of {:.4g} kg taken off the pull", spring.mass.value));
+  if (has_mass)
+    notes.push_back(fmt::format("spring: inertia of {} kg taken off the pull", general(spring.mass.value, 4)));
 }
 
 double usual_error(const std::vector<double>& errors) {
