@@ -39,7 +39,6 @@ inline constexpr double kSettled = kSpeedKnownTo;  // a plateau has settled, and
 inline constexpr double kRestNoise = 3, kRestDepth = 1e-3;
 /// A plateau off zero is rest with a wrong zero, or with creep, where a spring loads it: plateaus that must show it,
 /// and the rise of friction over them, over its range. In slow sliding friction stays or wanders.
-inline constexpr std::size_t kFewestLoadings = kFewestForMedian;
 inline constexpr double kLeastLoading = 0.3;
 inline constexpr double kTurnsOneWay = 0.5;  ///< mean speed of a disc over its mean size; 1/3 for 1.5 turns of a sine
 

@@ -60,7 +60,7 @@ bool rests(const Trace& trace, const PlateauSearch& s) {
     }
     if (2 * moving > all) return true;
   }
-  if (s.plateaus.runs.size() < kFewestLoadings) return false;
+  if (s.plateaus.runs.size() < kFewestForMedian) return false;
   std::vector<double> rises;
   for (const StickPlateau& run : s.plateaus.runs) rises.push_back(rise_over(trace, run, s.blocks.length));
   std::vector<double> friction = thinned(trace.friction, std::size_t{1} << 15);
