@@ -5,12 +5,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
 
-#include "limits.hpp"
 #include "tribofit/ingest/files_opened.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/text_of_file.hpp"
@@ -87,25 +85,6 @@ std::size_t InputFile::read(std::uint64_t offset, std::span<char> buffer) const 
   }
   if (line_end_ != '\n') std::replace(buffer.begin(), buffer.begin() + std::ptrdiff_t(done), line_end_, '\n');
   return done;
-}
-
-std::uint64_t InputFile::line_start(std::uint64_t offset, std::uint64_t end) const {
-  if (offset == 0 || offset >= end) return std::min(offset, end);
-  std::array<char, 4096> buffer;
-  for (std::uint64_t at = offset - 1; at < end; at += buffer.size()) {
-    const std::size_t wanted = static_cast<std::size_t>(std::min<std::uint64_t>(buffer.size(), end - at));
-    const std::size_t count = read(at, std::span(buffer).first(wanted));
-    if (const void* found = std::memchr(buffer.data(), '\n', count)) {
-      return at + static_cast<std::uint64_t>(static_cast<const char*>(found) - buffer.data()) + 1;
-    }
-    if (at + count > offset + kLongestLine) refuse_long_line(0);
-  }
-  return end;
-}
-
-void InputFile::refuse_long_line(std::size_t line) const {
-  throw InputError("a line is longer than 1 MB",
-                   "a trace has one row of numbers per line; check that this is a CSV file", {path_, line, ""});
 }
 
 }  // namespace tribofit

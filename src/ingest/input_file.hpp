@@ -24,12 +24,6 @@ class InputFile {
   /// Fills `buffer` from `offset`; fewer bytes than asked for only at the end of the file.
   std::size_t read(std::uint64_t offset, std::span<char> buffer) const;
 
-  /// The first line start at or after `offset` (an offset is a line start when the byte before it ends a line), or
-  /// `end` when there is none before it. Lines longer than kLongestLine are refused with an InputError.
-  std::uint64_t line_start(std::uint64_t offset, std::uint64_t end) const;
-
-  [[noreturn]] void refuse_long_line(std::size_t line) const;
-
  private:
   std::string path_;
   std::shared_ptr<const int> descriptor_;

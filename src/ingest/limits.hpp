@@ -91,8 +91,8 @@ inline constexpr double kLargestValue = 1e100;
 /// [bytes].
 inline constexpr double kMemoryOverValues = 1.5;
 inline constexpr std::uint64_t kMemoryNotAsked = std::uint64_t{1} << 28;
-/// Columns of a file; more are no channels of a trace.
-inline constexpr std::size_t kMostColumns = 4096;
+/// Columns of a file; more are no channels of a trace. Names in a message of what was not read.
+inline constexpr std::size_t kMostColumns = 4096, kMostNamed = 20;
 /// Longest line that is read [bytes]. A row of numbers is far below it; a file that is one line of gigabytes is found
 /// out without holding it. The same of a JSON file that people write, and 16 times as much of a manifest.
 inline constexpr std::size_t kLongestLine = std::size_t{1} << 20, kLargestManifest = 16 * kLongestLine;
@@ -100,16 +100,13 @@ inline constexpr std::size_t kLongestLine = std::size_t{1} << 20, kLargestManife
 /// 200 MB.
 inline constexpr std::size_t kMostTdmsProperties = 4096, kMostTdmsObjects = 65536,
                              kMostTdmsPieces = std::size_t{4} << 20;
-/// MATLAB: characters that are kept as a fact, structures in one another, and arrays of a file with the fields of
-/// structures; bytes of a name and of all names of a structure, and dimensions of an array.
-inline constexpr std::size_t kLongestMatText = 1000, kMostMatArrays = 65536;
-inline constexpr int kDeepestMatStructure = 16;
-inline constexpr std::uint64_t kLongestMatName = 4096, kMostMatNameBytes = std::uint64_t{1} << 20,
-                               kMostMatDimensions = 64;
+/// MATLAB: characters that are kept as a fact, arrays of a file with the fields of structures, and structures in one
+/// another.
+inline constexpr std::uint64_t kLongestMatText = 1000, kMostMatArrays = 65536, kDeepestMatStructure = 16;
 /// Bytes that the values of a MATLAB file may take, inflated and as doubles, over its size, which counts as a megabyte
 /// more. A recorded signal deflates to a tenth, a constant one to a thousandth of its size.
-inline constexpr std::uint64_t kMostInflated = 128, kMatSizeBeside = std::uint64_t{1} << 20;
-/// [s] of processor time that the library of version 7.3 may take for a file: a damaged one can keep it busy for ever.
+inline constexpr std::uint64_t kMostInflated = 128;
+/// [s] of processor time that the library may take for a MATLAB file: a damaged one can keep it busy for ever.
 inline constexpr unsigned kLongestMatRead = 120;
 
 }  // namespace tribofit

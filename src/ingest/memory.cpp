@@ -38,6 +38,10 @@ std::uint64_t kilobytes_of(const char* path, const std::string& name) {
 
 }  // namespace
 
+std::uint64_t used_memory() {
+  return 1024 * kilobytes_of("/proc/self/status", "VmSize:");
+}
+
 std::uint64_t available_memory() {
   const std::uint64_t kilobytes = kilobytes_of("/proc/meminfo", "MemAvailable:");
   std::uint64_t available = kilobytes > 0 ? 1024 * kilobytes : kUnlimited;
@@ -45,7 +49,7 @@ std::uint64_t available_memory() {
   if (group != kUnlimited) available = std::min(available, less(group, number_in("/sys/fs/cgroup/memory.current")));
   rlimit limit{};
   if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
-    available = std::min(available, less(limit.rlim_cur, 1024 * kilobytes_of("/proc/self/status", "VmSize:")));
+    available = std::min(available, less(limit.rlim_cur, used_memory()));
   }
   return available;
 }

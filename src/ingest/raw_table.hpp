@@ -72,10 +72,11 @@ struct RawColumn {
   std::string shown_name() const { return place.empty() ? name : name + " of " + place; }
 };
 
-/// A cell that is not a number of a usable size: its value is NaN.
+/// A cell that is not a number of a usable size, whose value is NaN, or a line that is no row.
 struct RawDefect {
-  std::size_t row = 0, column = 0;
+  std::size_t row = 0;  ///< or the line
   std::string problem, advice;
+  std::string column;  ///< its name; empty: all
 };
 
 /// What a file holds, before anything is known of what it means: readers make it (reader.hpp); channels, units, clocks,

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "byte_cursor.hpp"
-#include "byte_writer.hpp"
 #include "reader.hpp"
 
 namespace tribofit {
@@ -24,9 +23,32 @@ namespace binary_format {
 
 inline constexpr std::string_view signature = "\x01LABREC";
 
+/// Puts numbers, in the order of this machine, and texts into bytes.
+class Writer {
+ public:
+  explicit Writer(std::string_view begin = {}) : bytes_(begin) {}
+
+  template <class Number>
+  Writer& number(Number value) {
+    const auto at = bytes_.size();
+    bytes_.resize(at + sizeof value);
+    std::memcpy(bytes_.data() + at, &value, sizeof value);
+    return *this;
+  }
+  Writer& text(std::string_view value) {
+    number(static_cast<std::uint32_t>(value.size()));
+    bytes_ += value;
+    return *this;
+  }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
 /// The bytes of a file with these columns, facts and rows.
 inline std::string bytes_of(const RawTable& table) {
-  ByteWriter out(signature);
+  Writer out(signature);
   out.number(static_cast<std::uint32_t>(table.facts.size()));
   for (const RawFact& fact : table.facts) out.text(fact.name).text(fact.value);
   out.number(static_cast<std::uint32_t>(table.rows.size()));

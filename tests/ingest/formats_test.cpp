@@ -97,8 +97,8 @@ TEST_P(Damage, IsRefusedOrRead) {
   };
   const auto begin = std::clock();
   for (std::size_t size = 0; size < whole.size(); size += 1 + size / 16) try_bytes(whole.substr(0, size));
-  const bool is_slow = whole.starts_with("MATLAB 7.3");  // a process for each
-  for (std::size_t at = 0; at < whole.size(); at += is_slow ? 127 : at < 400 ? 1 : 37) {
+  const bool is_slow = whole.starts_with("MATLAB");  // a process or two for each
+  for (std::size_t at = 0; at < whole.size(); at += is_slow ? 31 : at < 400 ? 1 : 37) {
     std::string bytes = whole;
     bytes[at] = std::string("\0\x7f\xff", 3)[at % 3];
     try_bytes(bytes);
@@ -170,7 +170,7 @@ TEST_F(MatlabFiles, DefectsAreNamedByOffsetOrVariable) {
   other[128] = 99;
   expect_error(write(other), {}, "byte 128: an element of type 99", "damaged");
   const auto huge = mat5::array("mu", 6, 2000000000, 1, mat5::numbers({1, 2}));
-  expect_error(write(mat5::header() + huge), {}, "mu has 2000000000 elements and 16 bytes", "damaged");
+  expect_error(write(mat5::header() + huge), {}, "holds 2000000000 values, more than the file", "damaged", 0, "mu");
   const auto cells = mat5::array("runs", 1, 1, 1, mat5::array("", 1, 1, 1, mat5::vector("", {1, 2})));
   expect_error(write(mat5::header() + cells), {}, "holds no vector of numbers: runs (a cell array)",
                "vector of its own");

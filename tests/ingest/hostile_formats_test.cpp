@@ -127,9 +127,11 @@ TEST_F(HostileMatlab, MoreArraysThanAFileHasAreRefused) {
     names += std::string("f\0", 2);
     fields += mat5::element(14, "");
   }
-  const std::string structure =
-      mat5::array("s", 2, 1, 1, mat5::element(5, files::bytes_of(std::int32_t{2})) + mat5::element(1, names) + fields);
-  expect_error(write(mat5::header() + mat5::compressed(structure)), {}, "more than 65536 arrays", "damaged");
+  const std::string structure = mat5::array("s", 2, 1, 1,
+                                            files::bytes_of(std::uint32_t{(4U << 16) | 5U}) +
+                                                files::bytes_of(std::int32_t{2}) + mat5::element(1, names) + fields);
+  expect_error(write(mat5::header() + structure), {}, "more than 65536 arrays", "damaged");
+  expect_error(write(mat5::header() + mat5::compressed(structure)), {}, "", "damaged");
 }
 
 TEST_F(HostileMatlab, VariablesThatAreNotReadAreCountedBeyondTwenty) {
@@ -153,13 +155,10 @@ TEST_F(HostileMatlab, OfTwoArraysOfOneNameTheFirstIsRead) {
 
 TEST_F(HostileMatlab, ValuesBeyondWhatAFileOfItsSizeHoldsAreRefused) {
   const std::string one = mat5::compressed(bytes_vector("mu", 20 << 20));
-  const double spent = seconds_of([&] {
-    expect_error(write(mat5::header() + one), {}, "inflate to more than the", "save the variables that are needed");
-  });
-  EXPECT_LT(spent, 1);
+  expect_error(write(mat5::header() + one), {}, "holds 20971520 values, more than the file", "save it again", 0, "mu");
   std::string many = mat5::header();
   for (int i = 0; i < 40; ++i) many += mat5::compressed(bytes_vector(fmt::format("a{}", i), 1 << 20));
-  expect_error(write(many), {}, "inflate to more than the", "save the variables that are needed");
+  expect_error(write(many), {}, "holds 1048576 values, more than the file", "save it again", 0, "a16");
   std::vector<double> zeros(2000000, 0.0);  // a constant channel of a long record is none
   zeros.back() = 1;
   const std::string constant = mat5::compressed(mat5::vector("mu", zeros));

@@ -1,11 +1,11 @@
 #include "dialect.hpp"
 
+#include <fast_float/fast_float.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <map>
 
 #include "encoding.hpp"
@@ -230,23 +230,35 @@ std::vector<std::string> split_cells(std::string_view line, char separator) {
   return cells;
 }
 
-bool is_number(std::string_view cell, char decimal) {
-  std::string text(trimmed(cell));
-  if (decimal != '.') {
-    if (text.find('.') != std::string::npos) return false;
-    std::replace(text.begin(), text.end(), decimal, '.');
+std::optional<double> number_in(std::string_view cell, char decimal) {
+  if (cell.size() > 1 && cell.front() == '+' && cell[1] != '-') cell.remove_prefix(1);
+  const char *begin = cell.data(), *end = begin + cell.size();
+  for (const char mark : {decimal, '.'}) {
+    double value = 0;
+    const fast_float::parse_options form(fast_float::chars_format::general, mark);
+    const auto [last, error] = fast_float::from_chars_advanced(begin, end, value, form);
+    if (error != std::errc::invalid_argument && last == end) return value;
   }
-  const char* begin = text.data();
-  if (!text.empty() && *begin == '+') ++begin;
-  double value = 0;
-  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
-  return error != std::errc::invalid_argument && end == text.data() + text.size() && !text.empty();
+  return std::nullopt;
+}
+
+bool is_number(std::string_view cell, char decimal) {
+  cell = trimmed(cell);
+  return (decimal == '.' || cell.find('.') == std::string_view::npos) && number_in(cell, decimal);
+}
+
+RawDefect too_long_line() {
+  return {1, "a line is longer than 1 MB", "a trace has one row of numbers per line; check that this is a CSV file",
+          ""};
 }
 
 Dialect find_dialect(const InputFile& file) {
   if (file.size() == 0) throw InputError("is empty", "export the trace again", {file.path(), 0, ""});
   const std::string head = head_of(file);
-  if (head.size() > kLongestLine && head.find('\n') == std::string::npos) file.refuse_long_line(1);
+  if (head.size() > kLongestLine && head.find('\n') == std::string::npos) {
+    const RawDefect defect = too_long_line();
+    throw InputError(defect.problem, defect.advice, {file.path(), defect.row, ""});
+  }
 
   std::string_view text(head);
   const std::size_t mark = byte_order_mark(text);

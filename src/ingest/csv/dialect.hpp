@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,7 +48,12 @@ Dialect find_dialect(const InputFile& file);
 /// The cells of a line: quotes taken off, white space trimmed.
 std::vector<std::string> split_cells(std::string_view line, char separator);
 
-/// Whether the whole cell is a number (nan and inf are).
+/// The number that the whole cell is, exactly rounded; nan and inf are, and a decimal point is understood in any file.
+std::optional<double> number_in(std::string_view cell, char decimal);
+/// Whether it is one with this decimal mark.
 bool is_number(std::string_view cell, char decimal);
+
+/// What is wrong with a line of more than a megabyte.
+RawDefect too_long_line();
 
 }  // namespace tribofit

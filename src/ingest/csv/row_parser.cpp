@@ -1,190 +1,82 @@
 #include "row_parser.hpp"
 
+#include <fast_float/fast_float.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <optional>
-#include <string_view>
 #include <utility>
 
-#include "fccp.hpp"
-
 #include "clock_time.hpp"
-#include "decimal.hpp"
 #include "dialect.hpp"
+#include "heading.hpp"
 #include "ingest/limits.hpp"
-#include "ingest/raw_table.hpp"
+#include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 
 RowParser::RowParser(const std::vector<WantedCell>& wanted, std::size_t cells, char separator, char decimal,
                      bool may_be_short)
-    : wanted_(wanted), cells_(cells), separator_(separator), decimal_(decimal), may_be_short_(may_be_short) {
-  forms_.resize(wanted.size());
-  std::size_t next = 0;
-  for (const WantedCell& cell : wanted) {
-    skips_.push_back(cell.index - next);
-    next = cell.index + 1;
-  }
-}
+    : wanted_(wanted), cells_(cells), separator_(separator), decimal_(decimal), may_be_short_(may_be_short) {}
 
-RowParser::Outcome RowParser::parse(char* line, double* out) {
-  gappy_ = false;
-  switch (separator_) {
-    case blanks:
-      return parse_blanks(line, out) ? Outcome::numbers : parse_carefully<blanks>(line, out);
-    case ';':
-      return parse_carefully<';'>(line, out);
-    case '\t':
-      return parse_carefully<'\t'>(line, out);
-    default:
-      return parse_carefully<','>(line, out);
-  }
-}
-
-char* RowParser::parse_plain_rows(char* at, const char* end, const std::vector<double*>& column, std::size_t& row) {
-  const auto read = [&](const auto& parse_row) {
-    while (at < end) {
-      char* next = parse_row();
-      if (next == nullptr) break;
-      at = next;
-      ++row;
-    }
-    return at;
-  };
-  switch (separator_) {
-    case blanks:
-      return at;
-    case ';':
-      return read([&] { return parse_plain_row<';'>(at, end, column, row); });
-    case '\t':
-      return read([&] { return parse_plain_row<'\t'>(at, end, column, row); });
-    default:
-      return read([&] { return parse_plain_row<','>(at, end, column, row); });
-  }
-}
-
-/// The line after the one at `at`; null leaves that to the long way.
-template <char separator>
-char* RowParser::parse_plain_row(char* at, const char* end, const std::vector<double*>& column, std::size_t row) {
-  std::size_t cell = 0, k = 0;
-  for (const std::size_t skip : skips_) {
-    for (std::size_t i = 0; i < skip; ++i, ++cell) {
-      while (*at != separator && *at != '\n' && *at != '"' && *at != '\0') ++at;
-      if (*at != separator) return nullptr;
-      ++at;
-    }
-    while (*at == ' ') ++at;
-    const char* after = read_decimal(at, decimal_, column[k][row], forms_[k]);
-    ++k;
-    if (after == nullptr) return nullptr;
-    at += after - at;
-    while (*at == ' ') ++at;
-    ++cell;
-    if (*at != separator) {
-      if (*at == '\r') ++at;
-      return *at == '\n' && cell == cells_ && k == skips_.size() ? at + 1 : nullptr;
-    }
-    ++at;
-  }
-  char before = separator;  // of the character before the end of the line
-  for (; *at != '\n'; ++at) {
-    if (*at == '"' || at >= end) return nullptr;
-    if (*at == separator) ++cell;
-    if (*at != '\r' || at[1] != '\n') before = *at;
-  }
-  return cell + 1 == cells_ || (cell == cells_ && before == separator) ? at + 1 : nullptr;
-}
-
-/// The short way for columns that blanks and tabs divide. False leaves the line to the long way.
-bool RowParser::parse_blanks(const char* line, double* out) {
-  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
-  const char* at = line;
+const char* RowParser::parse_plain(const char* at, const char* end, const std::vector<double*>& column,
+                                   std::size_t row) const {
+  const fast_float::parse_options form(fast_float::chars_format::general, decimal_);
+  const bool by_blanks = separator_ == blanks;
+  const auto is_blank = [&](char c) { return c == ' ' || (by_blanks && c == '\t'); };
+  const auto ends_cell = [&](char c) { return by_blanks ? is_blank(c) : c == separator_; };
+  const auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
+  const char* begin = at;
   std::size_t cell = 0, next = 0;
   for (;; ++cell) {
     while (is_blank(*at)) ++at;
-    if (*at == '\0') break;
-    if (next < wanted_.size() && wanted_[next].index == cell) {
-      at = read_decimal(at, decimal_, out[next], forms_[next]);
-      ++next;
-      if (at == nullptr || (*at != '\0' && !is_blank(*at))) return false;
+    if (by_blanks && ends_line(*at)) break;
+    begin = at;
+    if (next < wanted_.size() && cell == wanted_[next].index) {
+      double& value = column[next++][row];
+      const auto [after, error] = fast_float::from_chars_advanced(at, end, value, form);
+      if (error != std::errc{} || !(std::abs(value) < kLargestValue)) return nullptr;
+      at = after;
     } else {
-      for (; *at != '\0' && !is_blank(*at); ++at) {
-        if (*at == '"') return false;
-      }
+      while (!ends_cell(*at) && !ends_line(*at) && *at != '"' && *at != '\0') ++at;
     }
+    while (!by_blanks && *at == ' ') ++at;
+    if (!ends_cell(*at)) {
+      ++cell;
+      break;
+    }
+    ++at;
   }
-  return cell == cells_;
+  const bool is_whole = cell == cells_ || (!by_blanks && cell == cells_ + 1 && at == begin);
+  if (*at == '\r') ++at;
+  return is_whole && next == wanted_.size() && *at == '\n' ? at + 1 : nullptr;
 }
 
-template <char separator>
-RowParser::Outcome RowParser::parse_carefully(char* line, double* out) {
-  const char* first = line;
-  while (*first == ' ' || *first == '\t') ++first;
-  if (*first == '\0' || *first == '\x1A') return Outcome::blank;
-  text_.assign(first, std::min<std::size_t>(std::strlen(first), kLongestText));
-  if (*first == '#' || *first == '%' || (first[0] == '/' && first[1] == '/')) return Outcome::text;
-  split_.clear();
-  try {
-    separator == blanks ? split_at_blanks(line) : split<separator>(line);
-  } catch (const io::error::escaped_string_not_closed&) {
+RowParser::Outcome RowParser::parse(std::string_view line, std::vector<double>& out) {
+  gappy_ = false;
+  const std::string_view text = trimmed(line);
+  if (text.empty() || text.front() == '\x1A') return Outcome::blank;
+  if (is_comment(text)) return Outcome::text;
+  if (line.find('\0') != std::string_view::npos)
+    return refuse("the line holds a NUL byte", "the file is damaged here or binary; export it again");
+  if (std::count(line.begin(), line.end(), '"') % 2 != 0)
     return refuse("a quote is opened and not closed", "close or remove it");
-  }
-  return judge(split_, out);
+  return judge(split_cells(line, separator_), out);
 }
 
-template <char separator>
-void RowParser::split(char* line) {
-  using Quotes = io::double_quote_escape<separator, '"'>;
-  for (char* begin = line; begin != nullptr;) {
-    char* end = begin + (Quotes::find_next_column_end(begin) - begin);
-    char* next = *end == '\0' ? nullptr : end + 1;
-    *end = '\0';
-    char* cell = begin;
-    io::trim_chars<' ', '\t'>::trim(cell, end);
-    Quotes::unescape(cell, end);
-    split_.push_back(cell);
-    begin = next;
-  }
-}
-
-void RowParser::split_at_blanks(char* line) {
-  for (char* at = line; *at != '\0';) {
-    while (*at == ' ' || *at == '\t') *at++ = '\0';
-    if (*at == '\0') return;
-    const bool quoted = *at == '"';
-    if (quoted) ++at;
-    split_.push_back(at);
-    while (*at != '\0' && (quoted ? *at != '"' : *at != ' ' && *at != '\t')) ++at;
-    if (!quoted) continue;
-    if (*at == '\0') throw io::error::escaped_string_not_closed();
-    *at++ = '\0';
-  }
-}
-
-/// Whether the line is a row, not text; counts the cells without empty ones at the end.
-bool RowParser::is_data(const std::vector<char*>& cells, std::size_t& count) const {
-  std::size_t filled = 0, numbers = 0;
+RowParser::Outcome RowParser::judge(const std::vector<std::string>& cells, std::vector<double>& out) {
+  std::size_t count = 0, filled = 0, numbers = 0;  // cells without empty ones at the end
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    double value = 0;
-    if (*cells[i] == '\0') continue;
+    if (cells[i].empty()) continue;
     count = i + 1;
     ++filled;
-    if (to_number(cells[i], value)) ++numbers;
+    if (number_in(cells[i], decimal_)) ++numbers;
   }
-  const bool whole = count == cells_ && separator_ != blanks;  // words of a sentence are many cells
-  return numbers > 0 && (whole || 2 * numbers >= filled);
-}
-
-RowParser::Outcome RowParser::judge(const std::vector<char*>& cells, double* out) {
-  std::size_t count = 0;
-  const bool is_row = is_data(cells, count);
   if (count == 0) return Outcome::blank;
-  if (!is_row) return Outcome::text;
+  const bool whole = count == cells_ && separator_ != blanks;  // words of a sentence are many cells
+  if (numbers == 0 || !(whole || 2 * numbers >= filled)) return Outcome::text;
   if (count > cells_) {
     return refuse(fmt::format("the row has {} cells where the file has {} columns", count, cells_),
                   decimal_ == '.' && count == 2 * cells_
@@ -196,48 +88,32 @@ RowParser::Outcome RowParser::judge(const std::vector<char*>& cells, double* out
                               cells.size() == 1 ? "" : "s", cells_),
                   "complete or remove the row");
   }
-  char none = '\0';
-  for (const auto& [index, column] : wanted_) take(index < cells.size() ? cells[index] : &none, column, *out++);
+  for (std::size_t k = 0; k < wanted_.size(); ++k) {
+    const auto& [index, column] = wanted_[k];
+    out[k] = number_of(index < cells.size() ? cells[index] : std::string(), column);
+  }
   return Outcome::numbers;
 }
 
-void RowParser::take(char* cell, const std::string& column, double& out) {
-  if (const std::optional<double> clock = clock_time(cell)) {
-    out = *clock;
-    return;
-  }
-  const bool is_number = *cell != '\0' && to_number(cell, out);
-  if (is_number && std::abs(out) < kLargestValue) return;
+double RowParser::number_of(const std::string& cell, const std::string& column) {
+  const std::optional<double> clock = clock_time(cell), number = clock ? clock : number_in(cell, decimal_);
+  if (number && std::abs(*number) < kLargestValue) return *number;
   const std::string shown = fmt::format("'{}'", std::string_view(cell).substr(0, 40));
-  out = std::numeric_limits<double>::quiet_NaN();
-  if (gappy_) return;
-  gappy_ = true;
-  if (*cell == '\0') {
+  if (gappy_) {  // the first one is said
+  } else if (cell.empty()) {
     refuse("the cell is empty", "fill it in or remove the row", column);
-  } else if (!is_number) {
+  } else if (!number) {
     refuse(shown + " is not a number", "correct it, remove the row, or name another column with --columns", column);
   } else {
     refuse(shown + " is not a finite number of a usable size", "fill it in or remove the row", column);
   }
+  gappy_ = true;
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 RowParser::Outcome RowParser::refuse(std::string problem, std::string advice, std::string column) {
-  defect_ = {std::move(problem), std::move(advice), std::move(column)};
+  defect_ = {0, std::move(problem), std::move(advice), std::move(column)};
   return Outcome::wrong;
-}
-
-/// Whether the whole cell is a number; one beyond the range of doubles counts as infinite.
-bool RowParser::to_number(char* cell, double& value) const {
-  if (decimal_ != '.') {
-    char* comma = std::strchr(cell, decimal_);
-    if (comma != nullptr && std::strchr(cell, '.') == nullptr) *comma = '.';
-  }
-  const char* begin = *cell == '+' && cell[1] != '-' ? cell + 1 : cell;
-  const char* end = begin + std::strlen(begin);
-  const auto [last, error] = std::from_chars(begin, end, value);
-  if (last != end || begin == end) return false;
-  if (error == std::errc::result_out_of_range) value = HUGE_VAL;
-  return error != std::errc::invalid_argument;
 }
 
 }  // namespace tribofit

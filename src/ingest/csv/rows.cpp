@@ -1,70 +1,50 @@
 #include "rows.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <condition_variable>
-#include <cstring>
 #include <exception>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
-#include <thread>
+#include <string_view>
 
-#include "decimal.hpp"
 #include "ingest/huge_pages.hpp"
 #include "ingest/limits.hpp"
 #include "ingest/memory.hpp"
 #include "row_parser.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 namespace {
 
-// A chunk and its numbers stay in the cache of a core, and its share of the work is large against that of handing over.
-// Chunks end where lines do and depend on the file only, not on the number of threads.
+// A chunk and its numbers stay in the cache of a core. Chunks end where lines do and depend on the file only, not on
+// the number of threads.
 constexpr std::uint64_t chunk_bytes = std::uint64_t{1} << 17;
-// Chunks that wait for one before them: as many as are read while memory is made present for the rows to come.
-constexpr std::size_t most_waiting = 4;
-constexpr std::size_t chunks_ahead = 6 * most_waiting;
 
 /// What one chunk of lines gave; lines count from 1 at the chunk's beginning.
 struct Chunk {
-  std::vector<std::unique_ptr<double[]>> numbers;  // of each wanted cell
-  std::vector<double*> values;                     // where they begin
-  std::size_t capacity = 0, rows = 0;
+  std::vector<std::vector<double>> values;  // of each wanted cell; as many as there is room for
+  std::vector<double*> columns;             // where they begin
+  std::size_t rows = 0, lines = 0, text_rows = 0;
   std::vector<std::pair<std::size_t, std::size_t>> line_starts;  // row, line
-  std::size_t lines = 0;
-  std::size_t text_rows = 0;
-  std::vector<TextLine> text;  // rows and lines of the chunk
-  std::optional<RawDefect> first_gap;
-  std::size_t wrong_line = 0;
-  std::optional<RowParser::Defect> defect;
-  std::optional<std::size_t> long_line;
-  std::exception_ptr failure;
+  std::vector<TextLine> text;                                    // rows and lines of the chunk
+  std::optional<RawDefect> first_gap, defect;                    // the row of a defect is its line
 
-  /// Empty, with the memory that it had.
-  void clear() {
-    Chunk empty;
-    empty.numbers = std::move(numbers);
-    empty.values = std::move(values);
-    empty.capacity = capacity;
-    *this = std::move(empty);
-  }
-
-  /// Memory that is not touched costs nothing.
-  void make_room(std::size_t columns, std::size_t most_rows) {
-    if (most_rows <= capacity && columns == numbers.size()) return;
-    capacity = most_rows;
-    numbers.resize(columns);
-    values.clear();
-    for (auto& column : numbers) {
-      column = std::make_unique_for_overwrite<double[]>(capacity);
-      values.push_back(column.get());
+  /// Empty, with room for so many rows.
+  void begin(std::size_t cells, std::size_t most_rows) {
+    rows = lines = text_rows = 0;
+    line_starts.clear();
+    text.clear();
+    first_gap.reset();
+    defect.reset();
+    values.resize(cells);
+    columns.clear();
+    for (auto& column : values) {
+      if (column.size() < most_rows) column.resize(most_rows);
+      columns.push_back(column.data());
     }
   }
 };
@@ -75,25 +55,19 @@ class RowReader {
       : file_(file), dialect_(dialect), wanted_(wanted), next_line_(dialect.data_line) {
     const std::uint64_t bytes = dialect.data_end - dialect.data_begin;
     chunks_ = static_cast<std::size_t>((bytes + chunk_bytes - 1) / chunk_bytes);
-    // Memory that is reserved and not used costs nothing, growing a vector twice its size does.
-    const auto estimate = static_cast<std::size_t>(1.2 * rows_in(bytes)) + 64;
-    refuse_beyond_memory(rows_in(bytes), wanted.size(), file.path());
-    rows_expected_ = static_cast<std::size_t>(rows_in(bytes));
+    const double rows = static_cast<double>(bytes) / std::max(2.0, dialect.row_bytes);
+    refuse_beyond_memory(rows, wanted.size(), file.path());
     rows_.values.resize(wanted.size());
-    for (auto& values : rows_.values) {
-      values.reserve(estimate);
-      prefer_huge_pages(values, rows_expected_);
-      reserved_.push_back(values.data());
+    for (auto& values : rows_.values) {  // what is reserved and not used costs nothing, growing twice the size does
+      values.reserve(static_cast<std::size_t>(1.2 * rows) + 64);
+      prefer_huge_pages(values, static_cast<std::size_t>(rows));
     }
   }
 
   Rows read(int threads) {
     const std::size_t available = static_cast<std::size_t>(threads > 0 ? threads : available_threads());
-    const std::size_t helpers = std::min(available, chunks_) - (chunks_ > 0 ? 1 : 0);
-    for (std::size_t k = 0; k < most_waiting + helpers + 1; ++k) spare_.push_back(std::make_unique<Chunk>());
-    wanted_rows_ = static_cast<std::size_t>(rows_in(chunks_ahead * chunk_bytes));
     {
-      const HelperThreads others(helpers, [this] { work(); });
+      const HelperThreads others(std::max<std::size_t>(1, std::min(available, chunks_)) - 1, [this] { work(); });
       work();
     }
     if (failure_) std::rethrow_exception(failure_);
@@ -101,173 +75,115 @@ class RowReader {
   }
 
  private:
+  /// Reads chunks, each of which is appended in its turn.
   void work() {
-    std::vector<char> text;
+    std::string text;
+    Chunk chunk;
     for (std::size_t i = next_chunk_++; i < chunks_; i = next_chunk_++) {
-      std::unique_ptr<Chunk> chunk = place_for(i);
-      if (!chunk) return;
+      std::exception_ptr failure;
       try {
-        make_present_ahead();
-        parse(i, text, *chunk);
+        parse(i, text, chunk);
       } catch (...) {
-        chunk->failure = std::current_exception();
+        failure = std::current_exception();
       }
-      if (!hand_over(i, std::move(chunk))) return;
-    }
-  }
-
-  /// Somewhere to read a chunk into, once few enough wait; null after a failure.
-  std::unique_ptr<Chunk> place_for(std::size_t i) {
-    std::unique_lock lock(mutex_);
-    turn_changed_.wait(lock, [&] { return i < turn_ + most_waiting || failure_; });
-    if (failure_) return nullptr;
-    std::unique_ptr<Chunk> chunk = std::move(spare_.back());  // its memory has been touched
-    spare_.pop_back();
-    return chunk;
-  }
-
-  /// Appends what has its turn: this chunk and those that wait for it, or neither. False after a failure.
-  bool hand_over(std::size_t i, std::unique_ptr<Chunk> chunk) {
-    const std::lock_guard lock(mutex_);
-    waiting_[i % most_waiting] = std::move(chunk);
-    while (!failure_ && waiting_[turn_ % most_waiting]) {
-      std::unique_ptr<Chunk> next = std::move(waiting_[turn_ % most_waiting]);
+      std::unique_lock lock(mutex_);
+      turn_changed_.wait(lock, [&] { return i == turn_ || failure_; });
+      if (failure_) return;
       try {
-        append(*next);
+        if (failure) std::rethrow_exception(failure);
+        append(chunk);
       } catch (...) {
         failure_ = std::current_exception();
       }
-      wanted_rows_ = rows_.size() + chunks_ahead * next->rows;
-      next->clear();
-      spare_.push_back(std::move(next));
       ++turn_;
-    }
-    turn_changed_.notify_all();
-    return !failure_;
-  }
-
-  double rows_in(std::uint64_t bytes) const { return static_cast<double>(bytes) / std::max(2.0, dialect_.row_bytes); }
-
-  /// Memory for the rows of the chunks to come: whoever appends would wait for it, and all others for him.
-  void make_present_ahead() {
-    constexpr std::size_t kRowsAtOnce = std::size_t{1} << 15;
-    const std::size_t rows = std::min<std::size_t>(rows_expected_, wanted_rows_);
-    for (std::size_t from = present_; from < rows; from = present_) {
-      if (!present_.compare_exchange_strong(from, from + kRowsAtOnce)) continue;
-      const std::size_t to = std::min(from + kRowsAtOnce, rows_expected_);
-      for (double* values : reserved_) make_present(values, from, to);
+      turn_changed_.notify_all();
     }
   }
 
-  std::uint64_t chunk_begin(std::size_t i) const {
-    const std::uint64_t nominal = dialect_.data_begin + i * chunk_bytes;
-    return i == 0 ? nominal : file_.line_start(std::min(nominal, dialect_.data_end), dialect_.data_end);
-  }
-
-  void parse(std::size_t i, std::vector<char>& text, Chunk& chunk) const {
-    const std::uint64_t begin = chunk_begin(i);
-    std::uint64_t end = begin;
-    try {
-      end = chunk_begin(i + 1);
-    } catch (const InputError&) {
-      chunk.long_line = find_long_line(begin);
-      return;
+  /// The lines that begin in a chunk, each with its end, but for one that is too long.
+  std::string_view read_lines(std::size_t i, std::string& text) const {
+    constexpr std::uint64_t kLineMore = 4096;  // a chunk ends with its last line
+    const std::uint64_t begin = dialect_.data_begin + i * chunk_bytes;
+    std::uint64_t at = i == 0 ? begin : begin - 1;  // the end of a line before it shows that one begins with it
+    text.clear();
+    const auto read_to = [&](std::uint64_t end) {
+      const std::size_t before = text.size();
+      text.resize(before + static_cast<std::size_t>(std::min(end, dialect_.data_end) - at));
+      text.resize(before + file_.read(at, std::span(text).subspan(before)));
+      at += text.size() - before;
+      return before;
+    };
+    read_to(begin + chunk_bytes);
+    const std::size_t first = i == 0 ? 0 : text.find('\n') + 1;
+    if (first == 0 && i > 0) return {};
+    while (text.back() != '\n' && at < dialect_.data_end && text.size() < chunk_bytes + 2 * kLongestLine) {
+      const std::size_t before = read_to(at + kLineMore), end = text.find('\n', before);
+      if (end != std::string::npos) text.resize(end + 1);
+      if (text.size() == before) break;
     }
-    if (begin >= end) return;
-    const std::size_t size = read_text(begin, end, text, chunk);
-    parse_lines(text.data(), size, chunk);
+    if (at >= dialect_.data_end && text.back() != '\n') text += '\n';
+    return std::string_view(text).substr(first);
   }
 
-  /// The bytes of a chunk, up to a NUL that would cut a line unseen.
-  std::size_t read_text(std::uint64_t begin, std::uint64_t end, std::vector<char>& text, Chunk& chunk) const {
-    const auto wanted = static_cast<std::size_t>(end - begin);
-    if (text.size() < wanted + 1 + kReadBeyond) text.resize(wanted + 1 + kReadBeyond);
-    const std::size_t count = file_.read(begin, std::span(text).first(wanted));
-    const void* zero = std::memchr(text.data(), '\0', count);
-    if (zero == nullptr) return count;
-    const char* at = static_cast<const char*>(zero);
-    chunk.wrong_line = 1 + static_cast<std::size_t>(std::count<const char*>(text.data(), at, '\n'));
-    chunk.defect =
-        RowParser::Defect{"the line holds a NUL byte", "the file is damaged here or binary; export it again", ""};
-    return static_cast<std::size_t>(at - text.data());  // the lines before may hold an earlier defect
-  }
-
-  /// A line too long to be found the end of begins after the last line end of the chunk.
-  std::size_t find_long_line(std::uint64_t begin) const {
-    std::string text(static_cast<std::size_t>(chunk_bytes), '\0');
-    text.resize(file_.read(begin, text));
-    return 1 + static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
-  }
-
-  /// Rows of at least this many bytes follow from the cells that a row has, if all have them.
-  std::size_t shortest_row() const { return dialect_.blocks_apart ? 1 : std::max<std::size_t>(1, dialect_.columns); }
-
-  /// `text` has kReadBeyond bytes and one more than `size`.
-  void parse_lines(char* text, std::size_t size, Chunk& chunk) const {
+  void parse(std::size_t i, std::string& text, Chunk& chunk) const {
+    const std::string_view lines = read_lines(i, text);
+    // Rows of at least this many bytes follow from the cells that a row has, if all have them.
+    const std::size_t shortest_row = dialect_.blocks_apart ? 1 : std::max<std::size_t>(1, dialect_.columns);
+    chunk.begin(wanted_.size(), std::max<std::size_t>(lines.size(), chunk_bytes) / shortest_row + 2);
     RowParser parser(wanted_, dialect_.columns, dialect_.separator, dialect_.decimal, dialect_.blocks_apart);
-    constexpr std::size_t kLineMore = 4096;  // a chunk ends with its last line
-    chunk.make_room(wanted_.size(), std::max<std::size_t>(size, chunk_bytes + kLineMore) / shortest_row() + 2);
     std::vector<double> row(wanted_.size());
     bool follows = false;  // the line before gave a row too
-    const auto count_rows = [&](std::size_t from) {
-      if (chunk.rows == from) return;
-      if (!follows) chunk.line_starts.emplace_back(from, chunk.lines + 1);
-      follows = true;
-      chunk.lines += chunk.rows - from;
-    };
-    char* const end = text + size;
-    *end = '\0';
-    for (char* at = text; at < end;) {
-      std::size_t before = chunk.rows;
-      at = parser.parse_plain_rows(at, end, chunk.values, chunk.rows);
-      count_rows(before);
-      if (at >= end) return;
-      const RowParser::Outcome outcome = parser.parse(ended_line(at, end), row.data());
-      if (outcome == RowParser::Outcome::numbers) {
-        if (parser.is_gappy() && !chunk.first_gap) chunk.first_gap = gap_of(parser, row, chunk);
-        for (std::size_t k = 0; k < row.size(); ++k) chunk.values[k][chunk.rows] = row[k];
-        before = chunk.rows++;
-        count_rows(before);
-        continue;
-      }
+    const char* const end = lines.data() + lines.size();
+    for (const char* at = lines.data(); at < end && !chunk.defect;) {
       ++chunk.lines;
-      follows = false;
-      if (outcome == RowParser::Outcome::blank) continue;
-      if (outcome == RowParser::Outcome::wrong) {
-        if (!chunk.defect || chunk.lines < chunk.wrong_line) {
-          chunk.defect = parser.defect();
-          chunk.wrong_line = chunk.lines;
+      const char* next = parser.parse_plain(at, end, chunk.columns, chunk.rows);
+      if (next == nullptr) {
+        const std::string_view line(at, static_cast<std::size_t>(std::find(at, end, '\n') - at));
+        next = at + line.size() + 1;
+        if (!take_line(line, parser, row, chunk)) {
+          follows = false;
+          at = next;
+          continue;
         }
-        return;
       }
-      ++chunk.text_rows;
-      if (chunk.text.size() < kMostTextLines) chunk.text.push_back({chunk.rows, chunk.lines, parser.text()});
+      at = next;
+      if (!follows) chunk.line_starts.emplace_back(chunk.rows, chunk.lines);
+      follows = true;
+      ++chunk.rows;
     }
   }
 
-  /// The line at `at`, ended by NUL in place of its line end; `at` goes on to the next.
-  static char* ended_line(char*& at, char* end) {
-    char* const line = at;
-    char* stop = static_cast<char*>(std::memchr(line, '\n', static_cast<std::size_t>(end - line)));
-    if (stop == nullptr) stop = end;
-    at = stop + 1;
-    if (stop > line && stop[-1] == '\r') --stop;
-    *stop = '\0';
-    return line;
-  }
-
-  RawDefect gap_of(const RowParser& parser, const std::vector<double>& row, const Chunk& chunk) const {
-    const auto cell = std::find_if(row.begin(), row.end(), [](double value) { return value != value; }) - row.begin();
-    return {chunk.rows, wanted_[static_cast<std::size_t>(cell)].index, parser.defect().problem, parser.defect().advice};
+  /// Whether a line that is not plain gives a row.
+  static bool take_line(std::string_view line, RowParser& parser, std::vector<double>& row, Chunk& chunk) {
+    if (line.size() > kLongestLine) chunk.defect = too_long_line();
+    if (chunk.defect) return false;
+    switch (parser.parse(line, row)) {
+      case RowParser::Outcome::numbers:
+        if (parser.is_gappy() && !chunk.first_gap) {
+          chunk.first_gap = parser.defect();
+          chunk.first_gap->row = chunk.rows;
+        }
+        for (std::size_t k = 0; k < row.size(); ++k) chunk.columns[k][chunk.rows] = row[k];
+        return true;
+      case RowParser::Outcome::text:
+        ++chunk.text_rows;
+        if (chunk.text.size() < kMostTextLines)
+          chunk.text.push_back({chunk.rows, chunk.lines, std::string(trimmed(line).substr(0, kLongestText))});
+        return false;
+      case RowParser::Outcome::wrong:
+        chunk.defect = parser.defect();
+        return false;
+      case RowParser::Outcome::blank:
+        break;
+    }
+    return false;
   }
 
   /// Called in the order of the file, one chunk at a time.
   void append(const Chunk& chunk) {
-    if (chunk.failure) std::rethrow_exception(chunk.failure);
-    if (chunk.long_line) file_.refuse_long_line(next_line_ + *chunk.long_line - 1);
     if (chunk.defect) {
       throw InputError(chunk.defect->problem, chunk.defect->advice,
-                       {file_.path(), next_line_ + chunk.wrong_line - 1, chunk.defect->column});
+                       {file_.path(), next_line_ + chunk.lines - 1, chunk.defect->column});
     }
     const std::size_t before = rows_.size();
     if (chunk.first_gap && !rows_.first_gap) {
@@ -278,10 +194,9 @@ class RowReader {
       if (rows_.text.size() >= kMostTextLines) break;
       rows_.text.push_back({before + text.row, next_line_ + text.line - 1, text.text});
     }
-    for (const auto& [row, line] : chunk.line_starts) rows_.lines.set(rows_.size() + row, next_line_ + line - 1);
-    for (std::size_t k = 0; k < wanted_.size(); ++k) {
-      rows_.values[k].insert(rows_.values[k].end(), chunk.values[k], chunk.values[k] + chunk.rows);
-    }
+    for (const auto& [row, line] : chunk.line_starts) rows_.lines.set(before + row, next_line_ + line - 1);
+    for (std::size_t k = 0; k < wanted_.size(); ++k)
+      rows_.values[k].insert(rows_.values[k].end(), chunk.columns[k], chunk.columns[k] + chunk.rows);
     rows_.text_rows += chunk.text_rows;
     next_line_ += chunk.lines;
   }
@@ -294,12 +209,7 @@ class RowReader {
   std::atomic<std::size_t> next_chunk_ = 0;
   std::mutex mutex_;
   std::condition_variable turn_changed_;
-  std::atomic<std::size_t> present_ = 0, wanted_rows_ = 0;  // rows for which there is memory, and will be needed soon
-  std::size_t rows_expected_ = 0;
-  std::vector<double*> reserved_;                             // where the memory of each column begins, at first
-  std::size_t turn_ = 0;                                      // the chunk whose turn it is to be appended
-  std::array<std::unique_ptr<Chunk>, most_waiting> waiting_;  // read, at their number modulo the size
-  std::vector<std::unique_ptr<Chunk>> spare_;
+  std::size_t turn_ = 0;  // the chunk whose turn it is to be appended
   std::exception_ptr failure_;
   std::size_t next_line_;
   Rows rows_;

@@ -31,16 +31,13 @@ struct Rows {
   std::size_t size() const { return values.empty() ? 0 : values.front().size(); }
 };
 
-/// Reads the rows of the table in chunks of a quarter of a megabyte, in parallel; only the `wanted` cells are
-/// converted.
+/// Reads the rows of the table in chunks, in parallel; only the `wanted` cells are converted, exactly rounded.
 ///
-/// Lines of plain numbers are read in one pass; in others cells are taken as text, quoted ones by fast-cpp-csv-parser.
-/// Both are converted exactly rounded. Blank lines are
-/// skipped; comments and lines of text are dropped, counted and, up to some thousands, kept. Cells that are empty, no
-/// number or not finite are NaN. Rows with too few or too many cells are refused with an InputError: the first one in
-/// the file, whatever the number of threads. The result does not depend on it either.
-/// Throws InputError where the values would take more memory than there is.
-/// Cost: linear; memory: the values and half a megabyte a thread.
+/// Lines of plain numbers are read in one pass; others are divided into cells first. Blank lines are skipped; comments
+/// and lines of text are dropped, counted and, up to some thousands, kept. Cells that are empty, no number or not
+/// finite are NaN. Rows with too few or too many cells are refused with an InputError: the first one in the file,
+/// whatever the number of threads. The result does not depend on it either. Throws InputError where the values would
+/// take more memory than there is. Cost: linear; memory: the values and half a megabyte a thread.
 Rows read_rows(const InputFile& file, const Dialect& dialect, const std::vector<WantedCell>& wanted, int threads);
 
 }  // namespace tribofit

@@ -6,43 +6,32 @@
 #include <unistd.h>
 
 #ifdef __linux__
+#include <malloc.h>
 #include <sys/prctl.h>
 #endif
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <mutex>
 #include <new>
-#include <optional>
-#include <string_view>
 #include <utility>
+#include <vector>
 
-#include "ingest/byte_cursor.hpp"
-#include "ingest/byte_writer.hpp"
 #include "ingest/limits.hpp"
-#include "tribofit/ingest/input_error.hpp"
+#include "ingest/memory.hpp"
+#include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 namespace {
 
-enum class Answer : std::uint8_t { bytes, refused, no_memory };
+/// What stands before each answer.
+struct Head {
+  std::uint64_t is_refusal, size;
+};
 
-/// What the process answers: the bytes, or the parts of the error.
-std::pair<Answer, std::string> answer_of(const std::function<std::string()>& work) {
-  try {
-    return {Answer::bytes, work()};
-  } catch (const InputError& error) {
-    ByteWriter out;
-    out.text(error.problem()).text(error.advice()).text(error.where().file).text(error.where().column);
-    return {Answer::refused, out.take()};
-  } catch (const std::bad_alloc&) {
-    return {Answer::no_memory, {}};
-  }
-}
-
-bool send(int pipe, std::string_view bytes) {
+bool write_all(int pipe, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t count = ::write(pipe, bytes.data(), bytes.size());
     if (count < 0 && errno == EINTR) continue;
@@ -52,54 +41,37 @@ bool send(int pipe, std::string_view bytes) {
   return true;
 }
 
-/// The end of this process, which is the child: it leaves nothing of what the parent has half done.
-[[noreturn]] void answer(int pipe, const std::function<std::string()>& work) {
+void answer(int pipe, bool is_refusal, std::string_view bytes) {
+  const Head head = {is_refusal, bytes.size()};
+  const std::string_view head_bytes(reinterpret_cast<const char*>(&head), sizeof head);
+  if (!write_all(pipe, head_bytes) || !write_all(pipe, bytes)) ::_exit(EXIT_FAILURE);  // nobody listens
+}
+
+void limit_process(std::uint64_t memory) {
 #ifdef __linux__
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  ::mallopt(M_PERTURB, 0x80);  // what is allocated and not filled, of doubles, is 1.4e306: no number of a usable size
 #endif
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
-  const rlimit no_core = {0, 0}, time = {kLongestMatRead, kLongestMatRead + 1};
+  const std::uint64_t most = used_memory() + memory;
+  const rlimit no_core = {0, 0}, time = {kLongestMatRead, kLongestMatRead + 1}, space = {most, most};
   ::setrlimit(RLIMIT_CORE, &no_core);
   ::setrlimit(RLIMIT_CPU, &time);
-  int status = EXIT_FAILURE;
+  ::setrlimit(RLIMIT_AS, &space);
+}
+
+/// The end of this process, which is the child: it leaves nothing of what the parent has half done.
+[[noreturn]] void work_apart(int pipe, std::uint64_t memory, const std::function<void(const Answers&)>& work) {
+  limit_process(memory);
+  const Answers answers(pipe);
   try {
-    const auto [answer, bytes] = answer_of(work);
-    const std::string head = ByteWriter().number(answer).number(static_cast<std::uint64_t>(bytes.size())).take();
-    if (send(pipe, head) && send(pipe, bytes)) status = EXIT_SUCCESS;
-  } catch (...) {  // nobody is left to report it to
+    work(answers);
+  } catch (const InputError& error) {
+    answers.refuse(error);
+  } catch (...) {
+    ::_exit(EXIT_FAILURE);
   }
-  ::_exit(status);
-}
-
-/// What comes through the pipe until its end. `expected`: bytes for which there is room at once.
-std::string receive(int pipe, std::size_t expected, std::size_t most) {
-  std::string bytes;
-  bytes.reserve(expected);
-  std::array<char, 1 << 16> part;
-  while (bytes.size() < most) {
-    const ssize_t count = ::read(pipe, part.data(), std::min(part.size(), most - bytes.size()));
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) break;
-    bytes.append(part.data(), static_cast<std::size_t>(count));
-  }
-  return bytes;
-}
-
-/// What the process answered; nothing where it broke off.
-struct Reply {
-  std::optional<Answer> answer;
-  std::string bytes;
-};
-
-Reply reply_of(int pipe) {
-  constexpr std::size_t head_bytes = 1 + sizeof(std::uint64_t), most_at_once = std::size_t{1} << 30;
-  const std::string head = receive(pipe, head_bytes, head_bytes);
-  if (head.size() < head_bytes) return {};
-  const auto size = number_at<std::uint64_t>(head, 1, native_big_endian);
-  Reply reply{static_cast<Answer>(head.front()), {}};
-  reply.bytes = receive(pipe, std::min<std::uint64_t>(size, most_at_once), std::string::npos);
-  if (reply.bytes.size() != size) reply.answer.reset();
-  return reply;
+  ::_exit(EXIT_SUCCESS);
 }
 
 [[noreturn]] void refuse(const std::string& path, const std::string& problem) {
@@ -107,51 +79,74 @@ Reply reply_of(int pipe) {
                    {path, 0, ""});
 }
 
-std::string result_of(const std::string& path, Reply reply) {
-  if (!reply.answer) refuse(path, "the reading of the file broke off");
-  if (*reply.answer == Answer::bytes) return std::move(reply.bytes);
-  if (*reply.answer == Answer::no_memory) throw std::bad_alloc();
-  ByteCursor cursor(std::move(reply.bytes),
-                    [&](std::uint64_t, std::uint64_t) { refuse(path, "the reading of the file broke off"); });
-  std::string problem = cursor.text(native_big_endian), advice = cursor.text(native_big_endian),
-              file = cursor.text(native_big_endian), column = cursor.text(native_big_endian);
-  throw InputError(std::move(problem), std::move(advice), {std::move(file), 0, std::move(column)});
-}
-
 }  // namespace
 
-std::string run_apart(const std::string& path, const std::function<std::string()>& work) {
+void Answers::send(std::string_view bytes) const {
+  answer(pipe_, false, bytes);
+}
+
+void Answers::refuse(const InputError& error) const {
+  std::string parts;
+  for (const std::string& part : {error.problem(), error.advice(), error.where().file, error.where().column})
+    parts += part + '\0';
+  answer(pipe_, true, parts);
+}
+
+Apart::Apart(std::string path, std::uint64_t memory, const std::function<void(const Answers&)>& work)
+    : path_(std::move(path)), most_(memory) {
+  static std::mutex mutex;  // no child inherits the writing end of another's pipe
+  const std::lock_guard lock(mutex);
   std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) refuse(path, std::string("cannot be read: ") + std::strerror(errno));
-  const pid_t child = ::fork();
-  if (child == 0) {
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) refuse(path_, std::string("cannot be read: ") + std::strerror(errno));
+  child_ = ::fork();
+  if (child_ == 0) {
     ::close(ends[0]);
-    answer(ends[1], work);
+    work_apart(ends[1], memory, work);
   }
   const int error = errno;
   ::close(ends[1]);
-  if (child < 0) {
-    ::close(ends[0]);
-    refuse(path, std::string("cannot be read: ") + std::strerror(error));
+  pipe_ = ends[0];
+  if (child_ < 0) {
+    ::close(pipe_);
+    refuse(path_, std::string("cannot be read: ") + std::strerror(error));
   }
-  Reply reply;
-  std::exception_ptr failure;
-  try {
-    reply = reply_of(ends[0]);
-  } catch (...) {
-    failure = std::current_exception();
+}
+
+Apart::~Apart() {
+  ::close(pipe_);  // a child that still writes ends by it
+  while (child_ > 0 && ::waitpid(child_, nullptr, 0) < 0 && errno == EINTR) {
   }
-  ::close(ends[0]);  // a child that still writes ends by it
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+}
+
+std::size_t Apart::next_size() {
+  Head head{};
+  receive({reinterpret_cast<char*>(&head), sizeof head});
+  if (head.size > most_) refuse_broken_off();
+  if (head.is_refusal == 0) return head.size;
+  std::string bytes(head.size, '\0');
+  receive(bytes);
+  const std::vector<std::string> parts = split(bytes, '\0');
+  throw InputError(parts[0], parts[1], {parts[2], 0, parts[3]});
+}
+
+void Apart::receive(std::span<char> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::read(pipe_, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) refuse_broken_off();
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
   }
-  if (failure) std::rethrow_exception(failure);
-  if (WIFSIGNALED(status)) {
-    refuse(path, WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL
-                     ? "the library that reads version 7.3 did not come to an end with it"
-                     : "the library that reads version 7.3 crashed on it");
+}
+
+void Apart::refuse_broken_off() {
+  while (child_ > 0 && ::waitpid(child_, &status_, 0) < 0 && errno == EINTR) {
   }
-  return result_of(path, std::move(reply));
+  child_ = -1;
+  const int signal = WIFSIGNALED(status_) ? WTERMSIG(status_) : 0;
+  const bool took_long = signal == SIGXCPU || signal == SIGKILL;
+  refuse(path_, took_long     ? "the library that reads MATLAB files did not come to an end with it"
+                : signal != 0 ? "the library that reads MATLAB files crashed on it"
+                              : "the reading of the file broke off");
 }
 
 }  // namespace tribofit

@@ -3,29 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <set>
 #include <utility>
 
-#include "contents.hpp"
 #include "ingest/limits.hpp"
 #include "ingest/numbers.hpp"
+#include "mat_file.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 namespace {
 
-constexpr std::size_t most_named = 20;  // of the variables that are not read
-constexpr std::size_t version_at = 124, order_at = 126;
+constexpr std::size_t header_bytes = 128, version_at = 124, order_at = 126, superblock_at = 512;
 constexpr unsigned version_5 = 0x0100, version_73 = 0x0200;
-
-/// Where the values of a column are: in an array, from an element on, every stride-th.
-struct Source {
-  std::string array;
-  std::uint64_t first = 0, stride = 1;
-};
 
 /// Rows and columns; nothing for arrays of more dimensions.
 std::pair<std::uint64_t, std::uint64_t> shape(const MatArray& array) {
@@ -44,7 +36,7 @@ class Listing {
  public:
   explicit Listing(RawTable& table) : table_(table) {}
 
-  void add(MatArray&& array) {
+  void add(const MatArray& array) {
     if (!names_.insert(array.name).second) {
       skipped_.push_back(array.name + " (another array has its name)");
     } else if (array.is_text) {
@@ -58,11 +50,12 @@ class Listing {
     }
   }
 
-  std::vector<Source> finish() {
+  std::vector<MatColumn> finish() {
     settle_rows();
-    if (!skipped_.empty()) table_.notes.push_back("not read: " + listed(skipped_, most_named));
+    const std::string skipped = listed(skipped_, kMostNamed);
+    if (!skipped_.empty()) table_.notes.push_back("not read: " + skipped);
     if (!table_.columns.empty()) return std::move(sources_);
-    throw InputError("holds no vector of numbers" + (skipped_.empty() ? "" : ": " + listed(skipped_, most_named)),
+    throw InputError("holds no vector of numbers" + (skipped_.empty() ? "" : ": " + skipped),
                      "save each channel as a vector of its own, with save(..., '-v7')", {table_.path, 0, ""});
   }
 
@@ -87,7 +80,7 @@ class Listing {
                                : fmt::format("{}(:,{})", array.name, k + 1);
       column.count = static_cast<std::size_t>(length);
       table_.columns.push_back(std::move(column));
-      sources_.push_back({array.name, by_row ? k : k * rows, by_row ? rows : 1});
+      sources_.push_back({array.variable, array.fields, by_row ? k : k * rows, by_row ? rows : 1, length});
     }
   }
 
@@ -101,100 +94,114 @@ class Listing {
   }
 
   RawTable& table_;
-  std::vector<Source> sources_;
+  std::vector<MatColumn> sources_;
   std::set<std::string> names_;
   std::vector<std::string> skipped_;
 };
 
-void load_vectors(MatContents& contents, const std::vector<Source>& sources, RawTable& table,
-                  std::span<const std::size_t> columns, int threads) {
-  std::vector<std::string> names;
-  for (const std::size_t index : columns) {
-    const bool known = std::find(names.begin(), names.end(), sources[index].array) != names.end();
-    if (!known && table.columns[index].count > 0) names.push_back(sources[index].array);
+[[noreturn]] void refuse_at(const InputFile& file, std::uint64_t at, const std::string& problem) {
+  throw InputError(fmt::format("byte {}: {}", at, problem), "the file is cut off or damaged; copy or save it again",
+                   {file.path(), 0, ""});
+}
+
+/// The number of variables of a file of version 5: elements of a type, a size and as many bytes, up to its end.
+/// libmatio ends without a word where one is damaged.
+std::size_t count_variables(const InputFile& file, bool big_endian) {
+  constexpr std::uint32_t kMatrix = 14, kCompressed = 15;
+  std::size_t count = 0;
+  std::string tag(8, '\0');
+  for (std::uint64_t at = header_bytes; at < file.size(); ++count) {
+    if (file.read(at, tag) < tag.size()) refuse_at(file, at, "the head of a variable is cut off");
+    const auto type = number_at<std::uint32_t>(tag, 0, big_endian);
+    const std::uint64_t size = number_at<std::uint32_t>(tag, 4, big_endian), left = file.size() - at - tag.size();
+    if (type != kMatrix && type != kCompressed)
+      refuse_at(file, at, fmt::format("an element of type {} where a variable begins", type));
+    if (size > left) refuse_at(file, at, fmt::format("a variable of {} bytes, of which {} are there", size, left));
+    if (count == kMostMatArrays) refuse_at(file, at, fmt::format("more than {} variables", kMostMatArrays));
+    at += tag.size() + size;
   }
-  std::vector<MatValues> arrays = contents.load(names, threads);
-  for (const std::size_t index : columns) {
-    RawColumn& column = table.columns[index];
-    const Source& source = sources[index];
-    if (column.count == 0) {
-      column.refusal.emplace("the vector is empty", "name another one with --columns", table.heading(index));
-      continue;
-    }
-    auto& [values, refusal] =
-        arrays[static_cast<std::size_t>(std::find(names.begin(), names.end(), source.array) - names.begin())];
-    if (refusal) {
-      column.refusal = refusal;
-      continue;
-    }
-    if (values.size() == column.count) {
-      column.numbers = std::move(values);
-      continue;
-    }
-    if (values.size() <= source.first + (column.count - 1) * source.stride) {
-      if (!column.numbers.empty()) continue;  // of two channels
-      column.refusal.emplace(fmt::format("the {} values of the vector are not all in the file", column.count),
-                             "the file is damaged; save it again", table.heading(index));
-      continue;
-    }
-    column.numbers.resize(column.count);
-    for (std::size_t i = 0; i < column.count; ++i) column.numbers[i] = values[source.first + i * source.stride];
+  return count;
+}
+
+/// The superblock of HDF5 (versions 0 to 3), behind MATLAB's own head, states where the file ends.
+void refuse_cut_off_hdf5(const InputFile& file) {
+  std::string bytes(64, '\0');
+  bytes.resize(file.read(superblock_at, bytes));
+  if (bytes.size() < 64 || !bytes.starts_with("\x89HDF")) refuse_at(file, superblock_at, "no HDF5 file begins here");
+  const int version = bytes[8];
+  const int bytes_of_offsets = bytes[version < 2 ? 13 : 9];
+  if (version < 0 || version > 3 || bytes_of_offsets != 8) {
+    refuse_at(file, superblock_at,
+              fmt::format("HDF5 of version {} with offsets of {} bytes", version, bytes_of_offsets));
   }
+  const std::size_t base_at = version == 0 ? 24 : version == 1 ? 28 : 12;
+  const auto end = number_at<std::uint64_t>(bytes, base_at + 16, false);
+  const auto base = number_at<std::uint64_t>(bytes, base_at, false);
+  if (base <= file.size() && end <= file.size()) return;
+  throw InputError(fmt::format("is cut off at byte {}: it states {} bytes", file.size(), end),
+                   "copy or save the file again", {file.path(), 0, ""});
+}
+
+/// The header's version, and whether numbers begin with their highest byte.
+bool is_big_endian(std::string_view header) {
+  return header[order_at] == 'M';
+}
+unsigned version_of(std::string_view header) {
+  return number_at<std::uint16_t>(header, version_at, is_big_endian(header));
+}
+
+/// The number of variables that a whole file has at least. Throws InputError for one that is not whole.
+std::size_t check_whole(const InputFile& file) {
+  std::string header(header_bytes, '\0');
+  header.resize(file.read(0, header));
+  if (header.size() < header_bytes) {
+    throw InputError(fmt::format("is cut off at byte {}, in its head", header.size()), "copy or save the file again",
+                     {file.path(), 0, ""});
+  }
+  const unsigned version = version_of(header);
+  if (version == version_5) return count_variables(file, is_big_endian(header));
+  if (version != version_73) {
+    throw InputError(
+        fmt::format("byte {}: is of version {:#06x} of MATLAB's format, which is not known", version_at, version),
+        "save it with save(..., '-v7')", {file.path(), 0, ""});
+  }
+  refuse_cut_off_hdf5(file);
+  return 0;
 }
 
 RawTable read_matlab(std::shared_ptr<const InputFile> file) {
+  const std::size_t variables = check_whole(*file);
   RawTable table;
   table.path = file->path();
-  std::string header(mat_header_bytes, '\0');
-  header.resize(file->read(0, header));
-  if (header.size() < mat_header_bytes) {
-    throw InputError(fmt::format("is cut off at byte {}, in its head", header.size()), "copy or save the file again",
-                     {file->path(), 0, ""});
-  }
-  const unsigned version = mat_version(header);
-  if (version != version_5 && version != version_73) {
-    throw InputError(
-        fmt::format("byte {}: is of version {:#06x} of MATLAB's format, which is not known", version_at, version),
-        "save it with save(..., '-v7')", {file->path(), 0, ""});
-  }
-  const std::shared_ptr<MatContents> contents =
-      version == version_5 ? contents_of_version_5(file) : contents_of_version_73(file);
   Listing listing(table);
-  contents->describe([&](MatArray&& array) { listing.add(std::move(array)); });
-  const auto sources = std::make_shared<const std::vector<Source>>(listing.finish());
-  table.load = [contents, sources](RawTable& filled, std::span<const std::size_t> columns, int threads) {
-    load_vectors(*contents, *sources, filled, columns, threads);
+  for (const MatArray& array : describe_mat_file(*file, variables)) listing.add(array);
+  table.load = [file, sources = listing.finish()](RawTable& filled, std::span<const std::size_t> columns, int) {
+    std::vector<std::size_t> wanted(columns.begin(), columns.end());
+    std::sort(wanted.begin(), wanted.end());  // as the arrays stand in the file
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    std::vector<MatColumn> asked;
+    for (const std::size_t index : wanted) asked.push_back(sources[index]);
+    Apart reading = read_mat_columns(*file, std::move(asked));
+    for (const std::size_t index : wanted) {
+      try {
+        filled.columns[index].numbers = reading.next<std::vector<double>>();
+      } catch (const InputError& error) {
+        filled.columns[index].refusal.emplace(error.problem(), error.advice(), filled.heading(index));
+      }
+    }
   };
   return table;
 }
 
 bool is_matlab(std::string_view head) {
   if (head.starts_with("MATLAB 5.0") || head.starts_with("MATLAB 7.3")) return true;
-  if (head.size() < mat_header_bytes || head.starts_with(std::string_view("\0\0\0\0", 4))) return false;
+  if (head.size() < header_bytes || head.starts_with(std::string_view("\0\0\0\0", 4))) return false;
   const std::string_view order = head.substr(order_at, 2);
   if (order != "IM" && order != "MI") return false;
-  return mat_version(head) == version_5 || mat_version(head) == version_73;
+  return version_of(head) == version_5 || version_of(head) == version_73;
 }
 
 }  // namespace
-
-std::uint64_t MatArray::elements() const {
-  std::uint64_t count = sizes.empty() ? 0 : 1;
-  for (const std::uint64_t size : sizes) {
-    if (size != 0 && count > std::numeric_limits<std::uint64_t>::max() / size)
-      return std::numeric_limits<std::uint64_t>::max();
-    count *= size;
-  }
-  return count;
-}
-
-unsigned mat_version(std::string_view header) {
-  return number_at<std::uint16_t>(header, version_at, is_mat_big_endian(header));
-}
-
-bool is_mat_big_endian(std::string_view header) {
-  return header[order_at] == 'M';
-}
 
 const Reader matlab_reader = {"MATLAB", is_matlab, read_matlab};
 

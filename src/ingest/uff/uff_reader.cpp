@@ -21,7 +21,6 @@ namespace tribofit {
 namespace {
 
 constexpr std::size_t header_lines = 11;
-constexpr std::size_t most_named = 20;  // of the functions that are not read
 
 /// What the abscissa is, by its number in the eighth line; 0 and 1 leave it open.
 namespace abscissa_type {
@@ -106,9 +105,9 @@ class File {
     }
     if (others_ > 0)
       skipped_.push_back(fmt::format("{} dataset{} of another number", others_, others_ == 1 ? "" : "s"));
-    if (!skipped_.empty()) table_.notes.push_back("not read: " + listed(skipped_, most_named));
+    if (!skipped_.empty()) table_.notes.push_back("not read: " + listed(skipped_, kMostNamed));
     if (!table_.columns.empty()) return;
-    throw InputError("holds no real function of time" + (skipped_.empty() ? "" : ": " + listed(skipped_, most_named)),
+    throw InputError("holds no real function of time" + (skipped_.empty() ? "" : ": " + listed(skipped_, kMostNamed)),
                      "export the time histories as dataset 58", {path_, 0, ""});
   }
 
