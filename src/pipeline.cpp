@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,10 +25,10 @@ namespace tribofit {
 
 namespace {
 
-Trace read_file(const TraceInput& input, const IdentifyOptions& options) {
-  ReadOptions read = with_declared_conditions(input.read, options.instruments);
+Trace read_file(const std::string& path, const ReadOptions& given, const Instruments& instruments) {
+  ReadOptions read = with_declared_conditions(given, instruments);
   read.clock_offset = estimate_clock_offset;
-  return read_trace(input.path, read);
+  return read_trace(path, read);
 }
 
 constexpr const char* kFilterInModel =
@@ -85,13 +87,22 @@ Identification segment(Identification out, Motion motion, const IdentifyOptions&
   return out;
 }
 
-Identification prepare(const TraceInput& input, const IdentifyOptions& options, const MotionOptions& motion,
-                       Purpose purpose) {
-  Trace trace = input.trace ? *input.trace : read_file(input, options);
-  Identification facts = facts_of(input.path, trace);
+/// Of a trace in memory: what is prepared again is not read again.
+Identification prepare(const std::string& path, Trace trace, const IdentifyOptions& options,
+                       const MotionOptions& motion, Purpose purpose) {
+  Identification facts = facts_of(path, trace);
   MotionOptions corrected = with_corrections(motion, options.effects);
   corrected.threads = options.threads;
   return segment(std::move(facts), compute_motion(std::move(trace), options.instruments, corrected), options, purpose);
+}
+
+const Trace& in_memory(const TraceInput& input) {
+  if (!input.trace) throw std::invalid_argument("a trace is prepared that was not read");
+  return *input.trace;
+}
+
+Trace taken(const TraceInput& input, const IdentifyOptions& options) {
+  return input.trace ? *input.trace : read_file(input.path, input.read, options.instruments);
 }
 
 /// What effects of friction need is checked when they are fitted.
@@ -139,10 +150,16 @@ void fit_driven(const IdentifyOptions& options, Identification& trace) {
 }  // namespace
 
 Identification identify(const std::string& path, const IdentifyOptions& options) {
-  Identification out = prepare_trace({path, options.read, {}}, options);
+  const auto prepared = [&](Trace trace, const IdentifyOptions& as) {
+    return prepare(path, std::move(trace), of_the_motion(as), as.motion, Purpose::anything);
+  };
+  Trace trace = read_file(path, options.read, options.instruments);
+  std::optional<Trace> kept;  // a declared filter may stand in the model
+  if (options.instruments.force_sensor.bandwidth && options.motion.undo_bandwidth) kept = trace;
+  Identification out = prepared(std::move(trace), options);
   const IdentifyOptions modelled = with_declared_filter(options, out.motion);
-  if (!modelled.motion.undo_bandwidth && options.motion.undo_bandwidth) {
-    out = prepare_trace({path, options.read, {}}, modelled);
+  if (kept && !modelled.motion.undo_bandwidth) {
+    out = prepared(*std::move(kept), modelled);
     out.notes.push_back(kFilterInModel);
   }
   fit_trace(modelled, out);
@@ -150,18 +167,18 @@ Identification identify(const std::string& path, const IdentifyOptions& options)
 }
 
 std::shared_ptr<const Trace> read_input(const TraceInput& input, const IdentifyOptions& options) {
-  return input.trace ? input.trace : std::make_shared<const Trace>(read_file(input, options));
+  if (input.trace) return input.trace;
+  return std::make_shared<const Trace>(taken(input, options));
 }
 
 Identification prepare_trace(const TraceInput& input, const IdentifyOptions& options) {
-  return prepare(input, of_the_motion(options), options.motion, Purpose::anything);
+  return prepare(input.path, in_memory(input), of_the_motion(options), options.motion, Purpose::anything);
 }
 
 Identification prepare_trace(const TraceInput& input, const IdentifyOptions& options, const Motion& uncorrected) {
   Motion motion = uncorrected;
   correct_plateau(motion, with_corrections(options.motion, options.effects).plateau);
-  return segment(facts_of(input.path, *read_input(input, options)), std::move(motion), of_the_motion(options),
-                 Purpose::anything);
+  return segment(facts_of(input.path, in_memory(input)), std::move(motion), of_the_motion(options), Purpose::anything);
 }
 
 void fit_trace(const IdentifyOptions& options, Identification& trace) {
@@ -186,19 +203,21 @@ DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOp
 DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOptions& given,
                          const DiagnoseOptions& more) {
   refuse_same(given.effects);
+  std::vector<TraceInput> read = inputs;
+  for (TraceInput& input : read) input.trace = read_input(input, given);
   IdentifyOptions options = given;
-  if (given.instruments.force_sensor.bandwidth && !inputs.empty())
-    options = with_declared_filter(given, prepare_trace(inputs.front(), given).motion);
+  if (given.instruments.force_sensor.bandwidth && !read.empty())
+    options = with_declared_filter(given, prepare_trace(read.front(), given).motion);
   IdentifyOptions kinematic = options;
   kinematic.effects = kinematic_effects(options.effects);
   const auto prepared = [&kinematic](const TraceInput& input, const IdentifyOptions& as) {
     const auto again = [&kinematic, input](const MotionOptions& motion) {
-      return prepare(input, kinematic, motion, Purpose::law);
+      return prepare(input.path, in_memory(input), kinematic, motion, Purpose::law);
     };
     return diagnosis::prepare_to_diagnose(again, as);
   };
   std::vector<diagnosis::PreparedTrace> traces;
-  for (const TraceInput& input : inputs) traces.push_back(prepared(input, options));
+  for (const TraceInput& input : read) traces.push_back(prepared(input, options));
   const std::vector<std::string> copies = diagnosis::exclude_copies(traces);
   DiagnosedTraces out = diagnosis::diagnose_traces(std::move(traces), options, more.diagnosis);
   Identification& first = out.traces.front();
@@ -207,13 +226,16 @@ DiagnosedTraces diagnose(const std::vector<TraceInput>& inputs, const IdentifyOp
   if (out.rungs.empty()) return out;
   IdentifyOptions as_diagnosed = options;
   as_diagnosed.motion.friction_low_pass = diagnosis::shared_friction_filter(out.traces);
-  for (const TraceInput& input : more.confirm) diagnosis::add_confirmation(prepared(input, as_diagnosed).trace, out);
+  for (TraceInput input : more.confirm) {
+    input.trace = read_input(input, given);
+    diagnosis::add_confirmation(prepared(input, as_diagnosed).trace, out);
+  }
   diagnosis::veto(out.diagnosis.confirmations, out.diagnosis);
   return out;
 }
 
 RigIdentification identify_rig(const TraceInput& input, const IdentifyOptions& options) {
-  RigIdentification out{prepare(input, options, options.motion, Purpose::rig), {}};
+  RigIdentification out{prepare(input.path, taken(input, options), options, options.motion, Purpose::rig), {}};
   if (out.trace.analysed) {
     out.rig = identify_rig(out.trace.motion, out.trace.segmentation, options.instruments);
   } else {
@@ -228,7 +250,7 @@ TwinIdentification identify_twin(const TraceInput& input, const IdentifyOptions&
 }
 
 TwinIdentification identify_twin(const TraceInput& input, const IdentifyOptions& options, const TwinOptions& more) {
-  TwinIdentification out{prepare(input, options, options.motion, Purpose::rig), {}, {}};
+  TwinIdentification out{prepare(input.path, taken(input, options), options, options.motion, Purpose::rig), {}, {}};
   require_formulas(options.effects, out.trace.motion, out.trace);
   require_stick_slip(out.trace);
   fit_machines(options, out);

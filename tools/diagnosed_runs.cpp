@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "analysis_options.hpp"
+#include "exit_status.hpp"
 #include "results.hpp"
 #include "stated_value.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -32,11 +34,12 @@ void check_usage(const Settings& s, const Split& split) {
   refuse_overwriting(s, files);
 }
 
-/// Whether a record can be diagnosed; adds to `left_out` where it cannot.
-bool is_usable(const Input& input, const IdentifyOptions& options, LeftOut& left_out) {
+/// Reads a record; whether it can be diagnosed. Adds to `left_out` where it cannot.
+bool is_usable(Input& input, const IdentifyOptions& options, LeftOut& left_out) {
   std::string reason = input.problem;
   try {
     if (reason.empty()) {
+      input.trace.trace = read_input(input.trace, options);
       const Identification trace = prepare_trace(input.trace, options);
       if (trace.analysed) return true;
       left_out.any_read = true;
@@ -95,11 +98,17 @@ Split usable_runs(const Settings& s, const IdentifyOptions& options, LeftOut& le
     throw InputError(runs.front().problem, "");
   }
   check_usage(s, keep_for_confirmation(runs, s.confirm, options.read));
-  const auto unusable = [&](const Input& input) { return !is_usable(input, options, left_out); };
-  if (runs.size() > 1) std::erase_if(runs, unusable);
+  const auto leave_unusable_out = [&](std::vector<Input>& inputs) {
+    std::vector<Input> usable;
+    for (Input& input : inputs) {
+      if (input.trace.trace || is_usable(input, options, left_out)) usable.push_back(std::move(input));
+    }
+    inputs = std::move(usable);
+  };
+  if (runs.size() > 1) leave_unusable_out(runs);
   if (runs.empty()) return {};
   Split split = keep_for_confirmation(std::move(runs), s.confirm, options.read);
-  if (!s.confirm.empty()) std::erase_if(split.kept, unusable);
+  if (!s.confirm.empty()) leave_unusable_out(split.kept);
   return split;
 }
 

@@ -135,8 +135,12 @@ ExitStatus run_identify(const Settings& s, const std::vector<std::string>& argum
   if (!s.pattern.empty()) find.pattern = pattern_from(s.pattern);
   Campaign campaign = find_runs(s.traces, options.read, find);
   if (is_batch(s, campaign)) return run_as_batch(s, std::move(campaign), options, arguments);
-  find.errors = ManifestErrors::refuse;
-  const std::vector<Input> inputs = find_runs(s.traces, options.read, find).runs;
+  std::vector<Input> inputs = std::move(campaign.runs);
+  const bool doubtful = std::any_of(inputs.begin(), inputs.end(), [](const Input& i) { return !i.problem.empty(); });
+  if (doubtful || !campaign.problems.empty()) {  // refuses them with their place
+    find.errors = ManifestErrors::refuse;
+    inputs = find_runs(s.traces, options.read, find).runs;
+  }
   if (inputs.size() == 1 && !inputs.front().problem.empty()) throw InputError(inputs.front().problem, "");
   check_usage(s, inputs);
   share_memory();

@@ -30,7 +30,8 @@ Identification identify(const std::string& path, const IdentifyOptions& options 
 /// A trace as it is read for the stages that follow: with what options.instruments declares of its conditions.
 std::shared_ptr<const Trace> read_input(const TraceInput& input, const IdentifyOptions& options = {});
 
-/// The stages up to the cycles: read, move, segment. Effects of the motion among options.effects are corrected.
+/// The stages after reading, up to the cycles: move, segment. Effects of the motion among options.effects are
+/// corrected. The trace is in memory (read_input): preparing never touches the disc.
 Identification prepare_trace(const TraceInput& input, const IdentifyOptions& options = {});
 /// The same where the motion of the trace without effects of the motion is known: the corrections are made to a copy of
 /// it, and nothing is looked for again.

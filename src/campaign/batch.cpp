@@ -112,6 +112,7 @@ class Batch {
       return;
     }
     const Run& run = *end.run;
+    const FileState before = state_of(run.trace.path);
     RunRecord record = record_of(run);
     if (is_present(run, record)) {
       end.present = true;
@@ -119,7 +120,7 @@ class Batch {
       end.message = record.message;
     } else {
       admission_.enter(bytes_[k]);
-      fit_and_keep(k, record, end);
+      fit_and_keep(k, before, record, end);
       admission_.leave(bytes_[k]);
     }
     report_progress(k, end);
@@ -157,9 +158,9 @@ class Batch {
     return true;
   }
 
-  void fit_and_keep(std::size_t k, RunRecord& record, RunEnd& end) {
+  void fit_and_keep(std::size_t k, const FileState& before, RunRecord& record, RunEnd& end) {
     std::optional<Identification> result;
-    if (record.status == RunStatus::ok) result = analysis_of_what_stays(*end.run, k, record);
+    if (record.status == RunStatus::ok) result = analysis_of_what_stays(*end.run, k, before, record);
     end.status = record.status;
     end.message = record.message;
     try {
@@ -177,16 +178,19 @@ class Batch {
   }
 
   /// The analysis of the bytes that the key of the record is of: again, where the file changed meanwhile.
-  std::optional<Identification> analysis_of_what_stays(const Run& run, std::size_t k, RunRecord& record) const {
+  std::optional<Identification> analysis_of_what_stays(const Run& run, std::size_t k, FileState before,
+                                                       RunRecord& record) const {
     constexpr int kMostTries = 3;
     for (int tries = 0; tries < kMostTries; ++tries) {
       record.status = RunStatus::ok;
       record.message.clear();
-      const FileState before = state_of(run.trace.path);
       try {
-        record.key = key_of(run, record);
+        if (tries > 0) {
+          before = state_of(run.trace.path);
+          record.key = key_of(run, record);
+        }
         std::optional<Identification> result = analysis_of(run, k, record);
-        if (state_of(run.trace.path) == before && key_of(run, record) == record.key) return result;
+        if (state_of(run.trace.path) == before) return result;
       } catch (const InputError& error) {  // of the hash: gone meanwhile
         record.message = with_place(error, run);
       }
