@@ -284,6 +284,7 @@ TerminalOptions terminal_options(const Settings& s, const std::vector<std::strin
   options.instruments_declared = !s.instruments.empty();
   options.csv_written = !s.csv.empty();
   options.report_written = !s.report.empty();
+  options.charts = !s.report.empty() || !s.figures.empty();
   options.arguments = arguments;
   return options;
 }

@@ -257,7 +257,7 @@ ExitStatus run_as_batch(const Settings& s, Campaign campaign, const IdentifyOpti
     print_problems(campaign, outcome);
     if (s.shard.empty()) {
       const Summarised all = summarise(s, ResultReader(batch.results), shown_as(s, campaign, arguments));
-      if (!s.quiet) print(all.summary.table);
+      if (!s.quiet) print(all.table);
       refused = print_refusals(all);
       refused = worse(refused, refuse_replaced(all.summary.missing, outcome, batch.results));
     }

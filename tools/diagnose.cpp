@@ -57,10 +57,7 @@ ExitStatus run_diagnose(const Settings& s, const std::vector<std::string>& argum
   const std::vector<std::string> inputs = alone ? std::vector{split.diagnosed.front().trace.path} : s.traces;
   TerminalOptions terminal = terminal_options(s, own);
   terminal.inputs = inputs;
-  deliver(s, {[&] { return render_diagnosis(result, terminal); }, [&] { return to_json(result, {arguments}); },
-              [&] {
-                return report_of(result, {own, inputs, !s.instruments.empty()});
-              },
+  deliver(s, {[&] { return report_of(result, terminal); }, [&] { return to_json(result, {arguments}); },
               [&](const std::string& folder) { write_csv_folder(folder, result); }});
   if (result.analysed && result.diagnosis.verdict != Verdict::not_enough_data)
     return left_out.reasons.empty() ? ExitStatus::done : ExitStatus::failed;

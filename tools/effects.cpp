@@ -25,12 +25,13 @@ void add_effects(const Command& app) {
     if (!key->empty()) {
       const Effect effect = effect_named(*key);
       const Fingerprint shown = fingerprint(effect);
-      print(render_effect(describe(effect), options, &shown));
+      print(render_terminal(effect_report(describe(effect), &shown, options), options));
       return ExitStatus::done;
     }
     std::vector<EffectInfo> effects;
     for (const Effect& effect : effect_catalogue()) effects.push_back(describe(effect));
-    print(render_laws(law_catalogue(), options) + render_effects(effects, options));
+    print(render_terminal(laws_report(law_catalogue()), options) + "\n" +
+          render_terminal(effects_report(effects), options));
     return ExitStatus::done;
   });
 }

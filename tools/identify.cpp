@@ -54,12 +54,9 @@ ExitStatus run_one(const Settings& s, const Input& input, const IdentifyOptions&
   result.notes.insert(result.notes.end(), input.notes.begin(), input.notes.end());
   result.warnings.insert(result.warnings.begin(), input.warnings.begin(), input.warnings.end());
   const std::vector<std::string> alone = arguments_for(input, arguments);
-  deliver(s, {[&] { return render_terminal(result, terminal_options(s, alone)); },
-              [&] { return to_json(result, {arguments}); },
-              [&] {
-                return report_of(result, {alone, {}, !s.instruments.empty()});
-              },
-              [&](const std::string& folder) { write_csv_folder(folder, result); }});
+  deliver(s,
+          {[&] { return report_of(result, terminal_options(s, alone)); }, [&] { return to_json(result, {arguments}); },
+           [&](const std::string& folder) { write_csv_folder(folder, result); }});
   const bool fitted = std::any_of(result.fits.begin(), result.fits.end(),
                                   [](const Fit& f) { return f.converged && !f.parameters.empty(); });
   const bool driven = result.rate_state && result.rate_state->fitted();

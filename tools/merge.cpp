@@ -13,6 +13,7 @@
 #include "tribofit/campaign/run_result.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/report/campaign.hpp"
+#include "tribofit/report/terminal.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;
@@ -42,7 +43,7 @@ ExitStatus merge(const Settings& s, const std::string& folder, const ReportOptio
   for (const std::string& problem : results.problems()) print_error(problem);
   for (const std::string& error : summary.errors) print_error(error);
   if (!s.quiet) {
-    print(summary.table);
+    print(all.table);
     print(fmt::format("{} fitted, {} failed, {} missing; summary in {}summary.csv\n", summary.fitted, summary.failed,
                       summary.missing, as_folder(folder)));
     print(summary.missing > 0 && !results.traces().empty()

@@ -72,11 +72,8 @@ ExitStatus run_plan(const Settings& s, const MeansOptions& typed, const std::vec
   TerminalOptions terminal = terminal_options(s, own);
   terminal.inputs = inputs;
   if (!diagnosed.analysed) plan.reason = reason_of(diagnosed);
-  deliver(s, {[&] { return render_plan(diagnosed, plan, terminal); },
-              [&] { return plan_json(diagnosed, plan, {arguments}); },
-              [&] {
-                return plan_report(diagnosed, plan, {own, inputs, !s.instruments.empty()});
-              }});
+  deliver(s, {[&] { return plan_report(diagnosed, plan, terminal); },
+              [&] { return plan_json(diagnosed, plan, {arguments}); }});
   if (plan.answered()) return left_out.reasons.empty() ? ExitStatus::done : ExitStatus::failed;
   print_error("nothing could be planned: " + plan.reason);
   return ExitStatus::failed;

@@ -6,11 +6,13 @@
 #include <filesystem>
 #include <system_error>
 
+#include "analysis_options.hpp"
 #include "console.hpp"
 #include "exit_status.hpp"
 #include "tribofit/ingest/output_tables.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/report/page.hpp"
+#include "tribofit/report/terminal.hpp"
 
 using namespace tribofit;
 
@@ -84,9 +86,7 @@ std::string written_line(const std::string& path) {
   return fmt::format("wrote {} ({})\n", printable(path), size_text(size_of(path)));
 }
 
-ReportFiles::ReportFiles(const Settings& s, const std::function<Report()>& make) {
-  if (s.report.empty() && s.figures.empty()) return;
-  const Report report = make();
+ReportFiles::ReportFiles(const Settings& s, const Report& report) {
   if (!s.figures.empty()) pictures_.emplace(report, s.figures, picture_format(s));
   if (s.report.empty()) return;
   page_.emplace(s.report);
@@ -106,12 +106,14 @@ void deliver(const Settings& s, const Outputs& outputs) {
     json->write(outputs.json());
     json->finish();
   }
-  ReportFiles drawn(s, outputs.report);
+  const bool printed = !s.quiet && s.json != "-";
+  Report report;
+  if (printed || !s.report.empty() || !s.figures.empty()) report = outputs.report();
+  ReportFiles drawn(s, report);
   if (!s.csv.empty() && outputs.csv) outputs.csv(s.csv);
   drawn.commit();
   if (json) json->commit();
-  if (s.quiet || s.json == "-") return;
-  print(outputs.text() + written(s, outputs.csv != nullptr));
+  if (printed) print(render_terminal(report, terminal_options(s, {})) + written(s, outputs.csv != nullptr));
 }
 
 bool same_file(const std::string& a, const std::string& b) {

@@ -11,11 +11,11 @@
 
 #include <optional>
 
-/// What is drawn of a report (--report, --figures), on the disc but without names until commit(). make: gives the
-/// report, and is only called where something was asked for.
+/// What is drawn of a report where that was asked for (--report, --figures), on the disc but without names until
+/// commit().
 class ReportFiles {
  public:
-  ReportFiles(const Settings& settings, const std::function<tribofit::Report()>& make);
+  ReportFiles(const Settings& settings, const tribofit::Report& report);
   void commit();
 
  private:
@@ -25,16 +25,14 @@ class ReportFiles {
 
 /// What can be made of one result; each is only called where it was asked for.
 struct Outputs {
-  std::function<std::string()> text;  ///< for people
+  std::function<tribofit::Report()> report;  ///< for people
   std::function<std::string()> json;
-  std::function<tribofit::Report()> report = {};
   std::function<void(const std::string&)> csv = {};  ///< writes tables into the folder given
 };
 
 /// Writes what was asked for of one result (--json, --report, --figures, --csv), all of it or none: the others are on
-/// the disc before the CSV gets its names, and get their own after it. Then prints the text and what was written,
-/// unless
-/// --quiet.
+/// the disc before the CSV gets its names, and get their own after it. Then prints the report and what was written,
+/// unless --quiet.
 void deliver(const Settings& settings, const Outputs& outputs);
 
 /// "wrote FILE (2.1 MB)"; of a folder with the size of what it holds.

@@ -120,7 +120,6 @@ MapAxis axis_from(const std::string& text, const Machine& machine, const std::st
 struct Begun {
   StudiedMachine machine;
   SettleOptions settle;
-  TerminalOptions terminal;
   JsonOptions json;
   ReportOptions report;
 };
@@ -133,18 +132,16 @@ Begun begin(StudyRequest& r, const Command& kind) {
   out.json.arguments = kind.own_options();
   out.machine = studied_machine(r.settings, r.machine, kind);
   out.machine.sharpness = out.settle.sharpness;
-  out.terminal = terminal_options(r.settings, shared_arguments(kind));
-  out.terminal.inputs = r.settings.traces;
-  out.terminal.csv_written = !r.settings.csv.empty();
-  out.report = {out.json.arguments, r.settings.traces, !r.settings.instruments.empty()};
+  out.report = terminal_options(r.settings, out.json.arguments);
+  out.report.inputs = r.settings.traces;
+  out.report.shared_arguments = shared_arguments(kind);
   return out;
 }
 
 template <class Study>
 void deliver(const StudyRequest& r, const Begun& b, const Study& study) {
   deliver(r.settings,
-          {[&] { return render_study(b.machine, study, b.terminal); },
-           [&] { return study_json(b.machine, study, b.json); }, [&] { return report_of(b.machine, study, b.report); },
+          {[&] { return report_of(b.machine, study, b.report); }, [&] { return study_json(b.machine, study, b.json); },
            [&](const std::string& folder) { write_study(folder, study); }});
 }
 
@@ -217,9 +214,8 @@ void run_map(StudyRequest& r, const Command& kind) {
   });
   file.finish();
   progress.end();
-  deliver(r.settings, {[&] { return render_map(b.machine, request, file.rows(), measure, b.terminal); },
-                       [&] { return map_json(b.machine, request, file.rows(), b.json); },
-                       [&] { return report_of(b.machine, request, file.rows(), b.report); }});
+  deliver(r.settings, {[&] { return report_of(b.machine, request, file.rows(), measure, b.report); },
+                       [&] { return map_json(b.machine, request, file.rows(), b.json); }});
 }
 
 Command add_kind(const Command& study, const char* name, const char* help, const std::shared_ptr<StudyRequest>& r,

@@ -87,13 +87,14 @@ Summarised summarise(const Settings& s, const ResultReader& results, const Repor
   } else if (std::error_code ignored; fs::exists(table, ignored)) {
     out.note = table.string() + " is of an earlier run with --compare; give --compare again to renew it";
   }
-  ReportFiles drawn(s, [&] { return report_of(results, runs, pooled, comparison, shown); });
-  const TerminalOptions options = terminal_options(s, {});
-  out.summary = write_summary(results, options, json);
-  out.summary.table += pooled_table(pooled, options);
-  if (comparison) out.summary.table += render_comparison(*comparison, groups, options);
+  TerminalOptions options = terminal_options(s, shown.arguments);
+  options.inputs = shown.inputs;
+  const Report report = report_of(results, runs, pooled, comparison, options);
+  ReportFiles drawn(s, report);
+  out.summary = write_summary(results, json);
   drawn.commit();
-  if (!out.note.empty()) out.summary.table += folded(out.note) + "\n";
+  out.table = render_terminal(report, options);
+  if (!out.note.empty()) out.table += folded(out.note) + "\n";
   return out;
 }
 

@@ -25,7 +25,8 @@ struct Summarised {
   };
   tribofit::CampaignSummary summary;
   std::vector<Refusal> refused;
-  std::string note;  ///< what was left as it is; empty: nothing
+  std::string note;   ///< what was left as it is; empty: nothing
+  std::string table;  ///< all of it for people
 };
 
 /// Writes all that is made of the results of a campaign: summary, what the runs say together, figures and, where a

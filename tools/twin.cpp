@@ -43,11 +43,8 @@ ExitStatus run_twin(const Settings& s, const std::vector<std::string>& arguments
   Identification& trace = result.trace;
   trace.notes.insert(trace.notes.end(), input.notes.begin(), input.notes.end());
   trace.warnings.insert(trace.warnings.begin(), input.warnings.begin(), input.warnings.end());
-  deliver(s, {[&] { return render_twin(result, terminal_options(s, arguments_for(input, arguments))); },
-              [&] { return to_json(result, {arguments}); },
-              [&] {
-                return report_of(result, {arguments, {input.trace.path}, !s.instruments.empty()});
-              }});
+  deliver(s, {[&] { return report_of(result, terminal_options(s, arguments_for(input, arguments))); },
+              [&] { return to_json(result, {arguments}); }});
   if (result.twin.reason.empty()) return ExitStatus::done;
   print_error(trace.path + ": there is no twin: " + result.twin.reason);
   return ExitStatus::failed;

@@ -9,10 +9,8 @@
 #include "campaign/condensed_json.hpp"
 #include "campaign/condition_cells.hpp"
 #include "campaign/figures_json.hpp"
-#include "campaign_tables.hpp"
 #include "json_parts.hpp"
 #include "numbers.hpp"
-#include "terminal_text.hpp"
 #include "tribofit/output/whole_file.hpp"
 #include "tribofit/version.hpp"
 
@@ -153,24 +151,17 @@ std::string run_json(const RunRecord& run, const Identification* result, const J
   return sealed(text);
 }
 
-CampaignSummary write_summary(const ResultReader& results, const TerminalOptions& options,
-                              const std::string& comparison) {
-  constexpr std::size_t kMostRows = 40;
+CampaignSummary write_summary(const ResultReader& results, const std::string& comparison) {
   const std::filesystem::path folder(results.folder());
   WholeFile csv((folder / "summary.csv").string()), json((folder / "summary.json").string());
   json.write("{\"tool\": " + line_of(object("name", "tribofit", "version", version)) + ",\n\"runs\": [");
   SummaryColumns columns;
-  std::string friction_unit = "1";
   columns.declare(summary_row("", "", ""));
   for (std::size_t k = 0; k < results.size(); ++k) {
-    const auto result = results.read(k);
-    if (!result) continue;
-    columns.declare(summary_row(*result));
-    if (result->was_read()) friction_unit = result->friction_unit;
+    if (const auto result = results.read(k)) columns.declare(summary_row(*result));
   }
   csv.write(columns.header());
   CampaignSummary summary;
-  ReportTable table = runs_table(friction_unit);
   for (std::size_t k = 0; k < results.size(); ++k) {
     const auto result = results.read(k);
     const MissingRun missing = result ? MissingRun{} : results.missing(k);
@@ -178,7 +169,6 @@ CampaignSummary write_summary(const ResultReader& results, const TerminalOptions
     json.write((k == 0 ? "\n" : ",\n") + line_of(result ? result_json(*result)
                                                         : object("name", missing.name, "file", missing.file, "status",
                                                                  "missing", "message", nullptr)));
-    if (k < kMostRows) table.rows.push_back(result ? run_row(*result) : run_row(missing));
     const bool ok = result && result->run.status == RunStatus::ok;
     ++(ok ? summary.fitted : result ? summary.failed : summary.missing);
     if (!ok) {
@@ -191,13 +181,6 @@ CampaignSummary write_summary(const ResultReader& results, const TerminalOptions
   json.finish();
   csv.commit();
   json.commit();
-  TerminalText text(options);
-  text.table(table);
-  if (table.rows.size() < results.size()) {
-    text.line(fmt::format("... and {} more in {}", results.size() - table.rows.size(), table.file));
-  }
-  text.line("+/- is one standard error of the run, from its cycles; held-out error and noise floor are RMSE");
-  summary.table = text.take();
   return summary;
 }
 

@@ -18,7 +18,7 @@ void limit_tables(Report& report) {
   for (ReportSection& section : report.sections) {
     for (ReportItem& item : section.items) {
       auto* table = std::get_if<ReportTable>(&item);
-      if (table == nullptr) continue;
+      if (table == nullptr || item.medium == Medium::terminal || section.medium == Medium::terminal) continue;
       table->folded |= table->rows.size() > kMostOpen;
       if (table->rows.size() <= kMostRows) continue;
       table->caption +=
@@ -28,16 +28,20 @@ void limit_tables(Report& report) {
   }
 }
 
-ReportSection runs_section(const DrawnCampaign& campaign) {
-  ReportSection section{"runs", "The runs", {}};
-  for (const std::string& law : joint_laws(campaign.groups)) section.add(scatter_chart(campaign, law));
+ReportTable listed_runs(const DrawnCampaign& campaign) {
   ReportTable runs = runs_table(campaign.friction_unit());
-  runs.caption = fmt::format("{} runs", campaign.results.size());
   std::size_t next = 0;
   for (std::size_t k = 0; k < campaign.results.size(); ++k) {
     const bool there = next < campaign.runs.size() && campaign.runs[next].position == k;
     runs.rows.push_back(there ? run_row(campaign.runs[next++]) : run_row(campaign.results.missing(k)));
   }
+  return runs;
+}
+
+ReportSection runs_section(const DrawnCampaign& campaign, ReportTable runs) {
+  ReportSection section{"runs", "The runs", {}, Medium::page};
+  for (const std::string& law : joint_laws(campaign.groups)) section.add(scatter_chart(campaign, law));
+  runs.caption = fmt::format("{} runs", campaign.results.size());
   section.add(std::move(runs));
   ReportTable warnings("Warnings of the runs", "summary.json");
   warnings.text({"run", "warning"});
@@ -87,12 +91,25 @@ Report report_of(const ResultReader& results, std::span<const RunResult> runs, c
   for (std::size_t k = 0; k < std::min(results.problems().size(), kMostWarnings); ++k) {
     report.warnings.push_back(results.problems()[k]);
   }
-  if (comparison) report.add({comparison_section(comparison->values, campaign.groups)});
-  const Statements statements = comparison ? comparison->statements : statements_of(results, runs, campaign.groups);
+  ReportTable listed = listed_runs(campaign);
   report.add(
-      {motion_figures(campaign), law_figures(campaign), statements_section(statements, campaign.groups),
-       pooled_section(pooled), trends_section(pooled.trends), runs_section(campaign),
-       run_section(command_line(options, {}, input), " Checksums of the traces stand in the results of the runs.")});
+      {{"first-runs",
+        "",
+        {listed, ReportText{"+/- is one standard error of the run, from its cycles; held-out error and noise floor "
+                            "are RMSE"}},
+        Medium::terminal}});
+  if (comparison) report.add({comparison_section(comparison->values, campaign.groups)});
+  if (options.charts) report.add({motion_figures(campaign), law_figures(campaign)});
+  if (comparison || options.charts) {
+    ReportSection section = statements_section(
+        comparison ? comparison->statements : statements_of(results, runs, campaign.groups), campaign.groups);
+    if (!comparison) section.medium = Medium::page;
+    report.add({std::move(section)});
+  }
+  report.add({pooled_section(pooled), trends_section(pooled.trends)});
+  if (options.charts) report.add({runs_section(campaign, std::move(listed))});
+  report.add({run_section(report, command_line(options, {}, input), {},
+                          " Checksums of the traces stand in the results of the runs.")});
   limit_tables(report);
   return report;
 }

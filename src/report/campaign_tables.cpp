@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "numbers.hpp"
-#include "terminal_text.hpp"
 #include "tribofit/campaign/earlier.hpp"
 
 namespace tribofit {
@@ -269,7 +268,11 @@ ReportSection statements_section(const Statements& s, std::span<const PooledGrou
 
 ReportSection pooled_section(const Pooled& pooled) {
   ReportSection section{"pooled", "All values", {}};
-  section.add(groups_table(pooled.groups));
+  section.add(repeats_table(pooled.groups), Medium::terminal);
+  const bool single = std::any_of(pooled.groups.begin(), pooled.groups.end(),
+                                  [](const PooledGroup& group) { return group.runs.size() == 1; });
+  if (single) section.plain("* one run: what differs from run to run is not in its error", Medium::terminal);
+  section.add(groups_table(pooled.groups), Medium::page);
   add_shared(pooled, section);
   return section;
 }
@@ -278,32 +281,10 @@ ReportSection trends_section(const Trends& trends) {
   ReportSection section{"trends", "Trends", {}};
   for (const std::string& sentence : trend_sentences(trends)) section.item(sentence);
   section.add(trends_table(trends));
+  for (const std::string& warning : trends.warnings) {
+    section.text(ReportText::Kind::warning, warning, Medium::terminal);  // a page has them at its head
+  }
   return section;
-}
-
-std::string pooled_table(const Pooled& pooled, const TerminalOptions& options) {
-  constexpr std::size_t kMostRows = 40;
-  if (pooled.groups.empty()) return "";
-  TerminalText text(options);
-  text.table(repeats_table(pooled.groups), kMostRows);
-  const bool single = std::any_of(pooled.groups.begin(), pooled.groups.end(),
-                                  [](const PooledGroup& group) { return group.runs.size() == 1; });
-  if (single) text.line("* one run: what differs from run to run is not in its error");
-  ReportSection shared;
-  add_shared(pooled, shared);
-  text.items(shared.items);
-  text.section(trends_section(pooled.trends));
-  for (const std::string& warning : pooled.trends.warnings) text.warning(warning);
-  return text.take();
-}
-
-std::string render_comparison(const ComparisonReport& report, std::span<const PooledGroup> groups,
-                              const TerminalOptions& options) {
-  TerminalText text(options);
-  text.section(comparison_section(report.values, groups));
-  text.section(statements_section(report.statements, groups));
-  text.raw("\n");
-  return text.take();
 }
 
 }  // namespace tribofit

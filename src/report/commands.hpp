@@ -8,12 +8,6 @@
 
 namespace tribofit {
 
-/// A command that exists, with the user's own options, and what it is for.
-struct Suggestion {
-  std::string reason;  ///< "to ..."
-  std::string command;
-};
-
 /// `identify` with these words and inputs, as a shell reads them.
 std::string command_line(const std::vector<std::string>& words, const std::vector<std::string>& inputs);
 

@@ -2,16 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "diagnosis/conclusions.hpp"
 #include "diagnosis_sentences.hpp"
 #include "numbers.hpp"
+#include "report/charts/diagnosis_charts.hpp"
 #include "report_parts.hpp"
 #include "segmentation/counts.hpp"
-#include "terminal_text.hpp"
 #include "tribofit/ingest/spelling.hpp"
-#include "tribofit/report/terminal.hpp"
 
 namespace tribofit {
 namespace {
@@ -51,22 +51,24 @@ std::string condition(const DiagnosedTraces& result, const ConditionInfo& which)
   return values.empty() ? "" : fmt::format("{} {}", fmt::join(values, ", "), which.unit);
 }
 
-/// A path too long for the terminal loses its middle.
-std::string shortened(const std::string& path, std::size_t width) {
-  if (path.size() <= width) return path;
-  const std::size_t half = (width - 3) / 2;
-  return path.substr(0, half) + "..." + path.substr(path.size() - half);
-}
-
-/// Notes, warnings and problems of the data, each once, with the trace's name where there are several.
-void add_remarks(const DiagnosedTraces& result, TerminalText& text) {
-  std::vector<std::string> said;
+/// How a text begins: what was diagnosed; notes, warnings and problems of the data, each once, with the trace's name
+/// where there are several.
+ReportSection traces_section(const DiagnosedTraces& result) {
+  ReportSection section{"record", "", {}, Medium::terminal};
+  const bool one = result.traces.size() == 1;
+  std::vector<std::string> known = {enumerated(distinct(result, kind_text))};
+  for (const ConditionInfo& which : condition_infos) known.push_back(condition(result, which));
+  known.push_back(amount_of_data(result));
+  std::erase(known, "");
+  section.text(ReportText::Kind::title,
+               fmt::format("{}: {}",
+                           one ? printable(result.traces.front().path) : fmt::format("{} traces", result.traces.size()),
+                           fmt::join(known, "; ")));
+  std::set<std::string> said;
   for (const Identification& trace : result.traces) {
     const auto remark = [&](const std::string& kind, const std::string& message) {
-      if (std::find(said.begin(), said.end(), message) != said.end()) return;
-      said.push_back(message);
-      const bool named = result.traces.size() > 1 && message.find(trace.path) == std::string::npos;
-      text.line(kind + (named ? trace.path + ": " : "") + message);
+      const bool named = !one && message.find(trace.path) == std::string::npos;
+      if (said.insert(message).second) section.plain(kind + (named ? trace.path + ": " : "") + message);
     };
     for (const std::string& note : trace.notes) remark("", note);
     for (const std::string& warning : trace.warnings) remark("warning: ", warning);
@@ -75,166 +77,109 @@ void add_remarks(const DiagnosedTraces& result, TerminalText& text) {
       if (check.status == HealthItem::Status::problem) remark("problem: ", check.message);
     }
   }
-}
-
-void add_header(const DiagnosedTraces& result, TerminalText& text) {
-  const bool one = result.traces.size() == 1;
-  const std::string title =
-      one ? printable(result.traces.front().path) : fmt::format("{} traces", result.traces.size());
-  std::vector<std::string> known = {enumerated(distinct(result, kind_text))};
-  for (const ConditionInfo& which : condition_infos) known.push_back(condition(result, which));
-  known.push_back(amount_of_data(result));
-  std::erase(known, "");
-  const std::string facts = fmt::format("{}", fmt::join(known, "; "));
-  const std::string rest = wrapped(facts, text.width(), 2);
-  const bool same_line = rest.find('\n') == std::string::npos && title.size() + facts.size() + 2 <= text.width();
-  text.raw(text.bold(wrapped(shortened(title, text.width()), text.width(), 2)));
-  text.raw((same_line ? ": " : "\n  ") + rest + "\n");
-  add_remarks(result, text);
+  return section;
 }
 
 /// Rungs and noise floor: name, room for a bar, held-out error, and how much of what is above the noise floor is gone.
-ReportTable ladder_table(const DiagnosedTraces& result, bool with_errors) {
+ReportTable ladder_table(const DiagnosedTraces& result) {
   const Diagnosis& d = result.diagnosis;
   const std::string unit = level_unit(result);
-  ReportTable table;
-  table.text({"", "", ""}).numbers({""});
+  ReportTable table("Held-out error (RMSE)");
+  table.text({"", "", ""}).text({""}, 1).numbers({""});
+  double largest = d.floor_rmse;
   for (std::size_t k = 0; k < d.ladder.size(); ++k) {
     const Rung& rung = d.ladder[k];
-    const double removed = k == 0 ? std::nan("") : removed_at(d, k);
-    const bool error = with_errors && rung.held_out_std_error > 0;
-    table.rows.push_back(
-        {fmt::format("{}  {}", k, k == 0 ? law_text(d) : "+ " + spelled(result, rung.added)), "",
-         (error ? with_error(rung.held_out_rmse, rung.held_out_std_error) : significant(rung.held_out_rmse, 3)) + unit,
-         std::isfinite(removed) ? fmt::format("{:.0f} %", std::floor(100 * removed)) : ""});
+    const double removed = k == 0 ? std::nan("") : removed_at(d, k), error = rung.held_out_std_error;
+    const int places = places_for(error);
+    table.rows.push_back({fmt::format("{}  {}", k, k == 0 ? law_text(d) : "+ " + spelled(result, rung.added)), "",
+                          (error > 0 ? fixed(rung.held_out_rmse, places) : significant(rung.held_out_rmse, 3)) + unit,
+                          error > 0 ? "+/- " + fixed(error, places) + unit : "",
+                          std::isfinite(removed) ? fmt::format("{:.0f} %", std::floor(100 * removed)) : ""});
+    table.bars.values.push_back(rung.held_out_rmse);
+    largest = std::fmax(largest, rung.held_out_rmse);
   }
-  table.rows.push_back({"   noise floor", "", significant(d.floor_rmse, 3) + unit, ""});
+  table.rows.push_back({"   noise floor", "", significant(d.floor_rmse, 3) + unit, "", ""});
+  table.bars.values.push_back(d.floor_rmse);
+  table.bars.column = 1, table.bars.full = largest, table.bars.pale = d.floor_rmse;
+  table.bars.pale_name = "noise floor: noise and scatter from cycle to cycle";
+  table.bars.full_name = "error above it";
+  if (d.ladder.size() > 1) table.bars.full_name += "; %: share of its square that is removed";
   return table;
 }
 
-void add_ladder(const DiagnosedTraces& result, TerminalText& text) {
-  constexpr std::size_t kShortest = 10, kLongest = 40;
-  const Diagnosis& d = result.diagnosis;
-  if (d.ladder.empty() || !std::isfinite(d.ladder.front().held_out_rmse)) return;
-  text.heading("Held-out error (RMSE)");
+void add_shares(const std::string& title, const std::vector<Share>& all, ReportSection& section) {
+  section.heading(title, Medium::terminal);
+  section.plain(where_sentence(all), Medium::terminal);
   ReportTable table;
-  std::size_t room = 0;
-  for (const bool with_errors : {true, false}) {
-    table = ladder_table(result, with_errors);
-    for (std::vector<std::string>& row : table.rows) row[2] = text.with_signs(row[2]);
-    const std::size_t used = widest(aligned(table, 2));
-    room = used < text.width() ? std::min(text.width() - used, kLongest) : 0;
-    if (room >= kShortest) break;
-  }
-  double largest = d.floor_rmse;
-  for (const Rung& rung : d.ladder) largest = std::fmax(largest, rung.held_out_rmse);
-  for (std::size_t k = 0; k < table.rows.size(); ++k) {
-    const double value = k < d.ladder.size() ? d.ladder[k].held_out_rmse : d.floor_rmse;
-    table.rows[k][1] = bar(value, largest, room, text.unicode(), d.floor_rmse);
-  }
-  const std::vector<std::string> lines = aligned(table, 2);
-  for (std::size_t k = 1; k < lines.size(); ++k) text.raw(lines[k] + "\n");
-  const auto [pale, full] = bar_signs(text.unicode());
-  std::string legend =
-      fmt::format("{} noise floor: noise and scatter from cycle to cycle; {} error above it", pale, full);
-  if (d.ladder.size() > 1) legend += "; %: share of its square that is removed";
-  text.line(legend);
-}
-
-void add_shares(const std::string& title, const std::vector<Share>& all, TerminalText& text) {
-  constexpr std::size_t kColumns = 18;
-  text.heading(title);
-  text.line(where_sentence(all));
+  table.text({"", ""}).numbers({""});
+  table.bars.column = 1, table.bars.full = 1, table.bars.longest = 18;
   for (const Share& s : worth_naming(all)) {
-    const std::string drawn = bar(s.share, 1, kColumns, text.unicode());
-    text.raw(fmt::format("  {:<10}  {}{:{}}  {:>3.0f} %\n", to_string(s.variable), drawn, "",
-                         kColumns - displayed(drawn), 100 * std::min(s.share, 1.0)));
+    table.rows.push_back(
+        {fmt::format("{:<10}", to_string(s.variable)), "", fmt::format("{:.0f} %", 100 * std::min(s.share, 1.0))});
+    table.bars.values.push_back(s.share);
   }
+  section.add(std::move(table), Medium::terminal);
 }
 
-void add_where(const DiagnosedTraces& result, TerminalText& text) {
+/// The ladder, and where the first law and the last model fail.
+void add_errors(const DiagnosedTraces& result, ReportSection& section) {
   const Diagnosis& d = result.diagnosis;
-  if (d.ladder.empty() || d.verdict == Verdict::not_enough_data) return;
+  section.add(ladder_chart(result));
+  section.add(where_chart(result));
+  if (d.ladder.empty() || !std::isfinite(d.ladder.front().held_out_rmse)) return;
+  section.add(ladder_table(result), Medium::terminal);
+  if (d.verdict == Verdict::not_enough_data) return;
   if (against_floor(d.ladder.front().held_out_rmse, d.floor_rmse) == FloorComparison::above) {
-    add_shares("Where the " + law_text(d) + " fails", d.where, text);
+    add_shares("Where the " + law_text(d) + " fails", d.where, section);
   }
-  if (d.ladder.size() > 1 && d.verdict == Verdict::unexplained) add_shares("What remains", d.remaining, text);
-}
-
-void add_verdict(const DiagnosedTraces& result, TerminalText& text) {
-  const Diagnosis& d = result.diagnosis;
-  text.heading("Verdict: " + std::string(to_string(d.verdict)));
-  text.line(diagnosis_verdict(result));
-  const bool said = d.verdict == Verdict::not_enough_data || d.runs_differ;  // the first message is the verdict
-  for (std::size_t k = said ? 1 : 0; k < d.messages.size(); ++k) text.line("note: " + d.messages[k]);
-}
-
-/// Parameters of what was found before any fit, which are no part of the law.
-ReportTable found_table(const DiagnosedTraces& result) {
-  ReportTable table;
-  table.text({"parameter"}).numbers({"value", "95 % interval"}).text({"unit"});
-  const std::vector<FitParameter> none;
-  const std::vector<FitParameter>& of_law =
-      result.best < result.fits.size() ? result.fits[result.best].parameters : none;
-  for (const Rung& rung : found_effects(result.diagnosis)) {
-    const EffectFinding* finding = finding_of(result.diagnosis, rung.added);
-    if (finding == nullptr) continue;
-    const bool stands_in_law = std::any_of(of_law.begin(), of_law.end(),
-                                           [&](const FitParameter& p) { return p.effect.starts_with(finding->key); });
-    if (stands_in_law) continue;
-    for (const FitParameter& p : finding->parameters) {
-      const int places = places_of(p);
-      table.rows.push_back({finding->key + "." + p.parameter.name, fixed(shown(p, p.value), places),
-                            interval_text(shown(p, p.lower95), shown(p, p.upper95), places),
-                            shown_unit(p, result.traces.front().motion) + (p.at_bound ? " (at bound)" : "")});
-    }
-  }
-  return table;
-}
-
-/// A table of four columns, or its rows on two lines each where it is too wide.
-void add_parameters(const ReportTable& table, TerminalText& text) {
-  if (widest(aligned(table, 2)) <= text.width()) {
-    text.table(table);
-    return;
-  }
-  for (const std::vector<std::string>& row : table.rows) {
-    text.line(row[0]);
-    text.line(row[1] + " " + row[2] + " " + row[3], 4);
-  }
+  if (d.ladder.size() > 1 && d.verdict == Verdict::unexplained) add_shares("What remains", d.remaining, section);
 }
 
 /// The final model whole: the law with its parameters, then what was found beside it, and the equations.
-void add_law(const DiagnosedTraces& result, TerminalText& text) {
-  const ReportTable table = found_table(result);
-  if (result.best < result.fits.size() && !result.fits[result.best].parameters.empty()) {
-    const Fit& fit = result.fits[result.best];
-    text.heading("The whole law: " + curve_name(fit));
-    add_parameters(law_table(fit, result.traces.front().motion), text);
-    text.line(std::string(describe(fit.model.law()).equation));
+ReportSection law_section(const DiagnosedTraces& result) {
+  ReportSection section{"whole-law", "", {}, Medium::terminal};
+  if (result.traces.empty()) return section;
+  const Motion& motion = result.traces.front().motion;
+  const Fit* fit = result.best < result.fits.size() ? &result.fits[result.best] : nullptr;
+  if (fit != nullptr && !fit->parameters.empty()) {
+    section.heading("The whole law: " + curve_name(*fit));
+    section.add(parameter_table(*fit, motion, false));
+    section.plain(std::string(describe(fit->model.law()).equation));
   }
-  if (!table.rows.empty()) {
-    text.heading("Found beside it");
-    add_parameters(table, text);
-  }
+  std::vector<FitParameter> beside;  // of what was found before any fit, which is no part of the law
+  std::vector<std::string> equations;
   for (const Rung& rung : found_effects(result.diagnosis)) {
     const EffectFinding* finding = finding_of(result.diagnosis, rung.added);
+    if (finding == nullptr || finding->parameters.empty()) continue;
     const std::string equation = info_of(result, rung.added).equation;
-    if (finding == nullptr || finding->parameters.empty() || equation.empty()) continue;
-    text.line(spelled(result, rung.added) + ": " + equation);
+    if (!equation.empty()) equations.push_back(spelled(result, rung.added) + ": " + equation);
+    if (fit != nullptr && std::any_of(fit->parameters.begin(), fit->parameters.end(),
+                                      [&](const FitParameter& p) { return p.effect.starts_with(finding->key); })) {
+      continue;
+    }
+    for (FitParameter p : finding->parameters) {
+      p.effect = finding->key;
+      beside.push_back(std::move(p));
+    }
   }
+  if (!beside.empty()) section.heading("Found beside it");
+  section.add(value_table("parameter", shown_values(beside, motion)));
+  for (const std::string& equation : equations) section.plain(equation);
+  return section;
 }
 
-void add_experiment(const Diagnosis& d, TerminalText& text) {
+void add_experiment(const Diagnosis& d, ReportSection& section) {
   const std::string same = equivalence_sentence(d);
-  if (same.empty() && d.next_experiment.empty()) return;
-  text.heading(same.empty() ? "Next experiment" : "Not distinguishable");
-  if (!same.empty()) text.line(same);
-  if (!d.next_experiment.empty()) text.line((same.empty() ? "" : "Discriminating experiment: ") + d.next_experiment);
+  const bool none = same.empty() && d.next_experiment.empty();
+  section.heading(same.empty() ? "Next experiment" : "Not distinguishable", none ? Medium::page : Medium::any);
+  section.plain(same);
+  if (none) section.plain("None is needed.", Medium::page);
+  if (!d.next_experiment.empty())
+    section.plain((same.empty() ? "" : "Discriminating experiment: ") + d.next_experiment);
 }
 
-/// Effects of a status by their reason.
-void add_by_reason(const Diagnosis& d, EffectStatus status, const std::string& heading, TerminalText& text) {
+/// Effects of a status by their reason; a page has a table of all of them.
+void add_by_reason(const Diagnosis& d, EffectStatus status, const std::string& heading, ReportSection& section) {
   std::vector<std::pair<std::string, std::string>> reasons;  // reason, keys
   for (const EffectFinding& e : d.effects) {
     if (e.status != status) continue;
@@ -245,32 +190,109 @@ void add_by_reason(const Diagnosis& d, EffectStatus status, const std::string& h
       at->second += ", " + e.key;
     }
   }
-  if (!reasons.empty()) text.heading(heading);
-  for (const auto& [reason, keys] : reasons) text.line(keys + (reason.empty() ? "" : ": " + reason));
+  if (!reasons.empty()) section.heading(heading, Medium::terminal);
+  for (const auto& [reason, keys] : reasons) {
+    section.plain(keys + (reason.empty() ? "" : ": " + reason), Medium::terminal);
+  }
+}
+
+ReportTable effects_table(const Diagnosis& d, const Motion& motion) {
+  ReportTable table("What became of each effect");
+  table.text({"effect", "status"}).numbers({"held-out error", "error taken away", "p"}).text({"parameters", "why"});
+  table.folded = true;
+  for (const EffectFinding* f : sorted_findings(d, Order::status)) {
+    std::string parameters;
+    if (f->status == EffectStatus::found || f->status == EffectStatus::equivalent) {
+      for (const FitParameter& p : f->parameters) {
+        parameters += (parameters.empty() ? "" : "; ") + p.parameter.name + " = " + value_text(p, motion);
+      }
+    }
+    table.rows.push_back({f->key, std::string(status_text(f->status)), significant(f->held_out_rmse, 3),
+                          percent(f->error_reduction), f->p_value < 1e-4 ? "< 0.0001" : significant(f->p_value, 2),
+                          parameters, f->reason});
+  }
+  return table;
+}
+
+ReportSection diagnosis_section(const DiagnosedTraces& result, const Motion& motion) {
+  const Diagnosis& d = result.diagnosis;
+  ReportSection section{"diagnosis", "Effects found", {}};
+  add_errors(result, section);
+  section.heading("Verdict: " + std::string(to_string(d.verdict)), Medium::terminal);
+  section.plain(diagnosis_verdict(result), Medium::terminal);
+  const bool said = d.verdict == Verdict::not_enough_data || d.runs_differ;  // the first message is the verdict
+  for (std::size_t k = said ? 1 : 0; k < d.messages.size(); ++k) section.plain("note: " + d.messages[k]);
+  add_experiment(d, section);
+  add_by_reason(d, EffectStatus::untried, "Not tried", section);
+  add_by_reason(d, EffectStatus::untestable, "What these data cannot show", section);
+  if (!d.confirmations.empty()) section.heading("On runs not used in the fit");
+  for (const Confirmation& c : d.confirmations) section.item(confirmation_sentence(c, result));
+  if (!d.formula.empty()) section.heading("A closed form of what remains");
+  section.plain(d.formula, Medium::terminal);
+  section.command(d.formula, Medium::page);
+  section.add(candidates_chart(result));
+  section.add(effects_table(d, motion));
+  return section;
+}
+
+/// The charts of the first traces in their sections.
+void draw(const DiagnosedTraces& result, TraceSections& sections) {
+  constexpr std::size_t kDrawnTraces = 8;
+  const std::size_t count = result.traces.size(), drawn = std::min(count, kDrawnTraces);
+  const auto bare = [&](const Fit& fit) { return fit.model.law() == result.diagnosis.law; };
+  const std::vector<const Fit*> models = drawn_models(result.fits, result.best, 2, bare);
+  const std::vector<const Fit*> curves = drawn_curves(models, result.rungs);
+  for (std::size_t k = 0; k < drawn; ++k) {
+    const Identification& trace = result.traces[k];
+    if (drawn > 1) {
+      for (ReportSection* s : {&sections.trace, &sections.law, &sections.errors, &sections.cycles}) {
+        s->heading(trace.path);
+      }
+    }
+    sections.add_trace(DrawnTrace(trace, models, curves, fmt::format("t{}", k + 1), 1 / static_cast<double>(drawn), k));
+  }
+  if (count > drawn) {
+    sections.trace.plain(fmt::format("The first {} of {} traces are drawn.", drawn, count));
+  }
 }
 
 }  // namespace
 
-std::string render_diagnosis(const DiagnosedTraces& result, const TerminalOptions& options) {
-  const Diagnosis& d = result.diagnosis;
-  TerminalText text(options);
-  add_header(result, text);
-  add_ladder(result, text);
-  add_where(result, text);
-  add_verdict(result, text);
-  add_experiment(d, text);
-  add_by_reason(d, EffectStatus::untried, "Not tried", text);
-  add_by_reason(d, EffectStatus::untestable, "What these data cannot show", text);
-  if (!d.confirmations.empty()) text.heading("On runs not used in the fit");
-  for (const Confirmation& c : d.confirmations) text.line(confirmation_sentence(c, result));
-  if (!d.formula.empty()) text.heading("A closed form of what remains");
-  if (!d.formula.empty()) text.line(d.formula);
-  add_law(result, text);
-  text.next(next_after_diagnosis(result, options));
-  if (result.traces.size() == 1 && d.verdict != Verdict::not_enough_data) {
-    text.look(ways_to_look("diagnose", options.arguments, result.traces.front().path, options.report_written));
+Report report_of(const DiagnosedTraces& result, const ReportOptions& options) {
+  const Motion none;
+  const Motion& motion = result.traces.empty() ? none : result.traces.front().motion;
+  const bool one = result.traces.size() == 1;
+  Report report = titled_report(
+      "diagnosis",
+      one ? file_name(result.traces.front().path) : fmt::format("{} traces together", result.traces.size()),
+      "Diagnosis", diagnosis_verdict(result));
+  for (const Identification& trace : result.traces) {
+    report.warnings.insert(report.warnings.end(), trace.warnings.begin(), trace.warnings.end());
   }
-  return text.take();
+  report.facts = model_facts("final model", result.fits, result.best, motion);
+  report.next = {next_after_diagnosis(result, options)};
+  if (one) {
+    const Facts record = facts_of(result.traces.front());
+    report.facts.insert(report.facts.end(), record.begin(), record.end());
+  }
+  if (one && result.diagnosis.verdict != Verdict::not_enough_data) {
+    for (Suggestion& way :
+         ways_to_look("diagnose", options.arguments, result.traces.front().path, options.report_written)) {
+      report.next.push_back(std::move(way));
+    }
+  }
+  TraceSections sections;
+  if (options.charts) draw(result, sections);
+  if (!result.traces.empty()) sections.trace.add(health_table(result.traces));
+  add_fits(result.fits, result.best, motion, options.instruments_declared, sections.law);
+  if (!result.fits.empty()) sections.law.add(profile_charts(result.fits[result.best], motion, "best"));
+  sections.add_sources();
+  for (ReportSection* s : {&sections.trace, &sections.law, &sections.errors, &sections.cycles})
+    s->medium = Medium::page;
+  report.add({traces_section(result), diagnosis_section(result, motion), law_section(result), sections.trace,
+              sections.law, sections.errors, sections.cycles,
+              run_section(report, diagnose_command(result, options), result.traces)});
+  return report;
 }
 
 }  // namespace tribofit

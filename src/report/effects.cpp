@@ -6,13 +6,14 @@
 #include <utility>
 
 #include "numbers.hpp"
-#include "terminal_text.hpp"
 #include "tribofit/friction/state_evolution.hpp"
 #include "tribofit/oscillator/fingerprint.hpp"
 #include "tribofit/report/terminal.hpp"
 
 namespace tribofit {
 namespace {
+
+constexpr std::size_t kNames = 15;  // columns of names on a terminal
 
 /// What an effect needs beyond friction and velocity: in short, and in full. An empty name is left out.
 std::string channels_text(const Channels& needs, bool in_full) {
@@ -65,96 +66,99 @@ std::string scaling_text(BoundScaling scaling) {
   return at == kTexts.end() ? "" : std::string("; bounds ") + at->second;
 }
 
-void add_effect(const EffectInfo& effect, TerminalText& text) {
-  constexpr std::size_t kNames = 15;
-  text.raw(fmt::format("{} ({})\n", text.bold(effect.spelled()), to_string(effect.group)));
-  text.line(effect.statement);
-  text.raw("\n");
-  text.item("equation", effect.equation, kNames);
-  text.item("source", effect.source, kNames);
-  const std::string needs = channels_text(effect.needs, true);
-  text.item("needs", needs.empty() ? "friction and velocity" : "friction, velocity, " + needs, kNames);
-  if (!effect.experiment.empty()) text.item("best shown by", effect.experiment, kNames);
-  for (const EffectForm& form : effect.forms) {
-    text.item("other form", effect.key + ":" + form.name + ": " + form.statement, kNames);
-  }
-  text.raw("\n");
+using Kind = ReportText::Kind;
+
+/// Parameters with their bounds, then what each is.
+ReportSection parameters_section(const EffectInfo& effect) {
+  ReportSection section{"parameters", "Parameters", {}};
   ReportTable table;
   table.text({"parameter", "unit"}).numbers({"lower", "upper", "start"});
+  Facts meanings;
   for (const Parameter& p : effect.parameters) {
     table.rows.push_back(
         {p.name, p.unit, fmt::format("{:g}", p.lower), fmt::format("{:g}", p.upper), fmt::format("{:g}", p.start)});
-  }
-  text.table(table);
-  text.raw("\n");
-  for (const Parameter& p : effect.parameters) {
     const bool own = p.scope == ParameterScope::record;
-    text.item(p.name, p.description + (own ? "; another value in each record" : "") + scaling_text(p.bound_scaling),
-              kNames);
+    meanings.emplace_back(
+        p.name, p.description + (own ? "; another value in each record" : "") + scaling_text(p.bound_scaling));
   }
-  if (!effect.pairs.empty()) text.raw("\n  looks like\n");
-  for (const LookAlike& pair : effect.pairs) {
-    text.raw("    " + text.bold(pair.key) + "\n");
-    text.line(pair.test, 6);
-  }
+  section.add(std::move(table));
+  section.add(ReportFacts{std::move(meanings), kNames});
+  return section;
 }
 
 }  // namespace
 
-std::string render_laws(std::span<const Law> laws, const TerminalOptions& options) {
-  TerminalText text(options);
-  text.heading("Laws (--law KEY); each model has one");
+Report laws_report(std::span<const Law> laws) {
+  ReportSection of_speed{"laws", "Laws (--law KEY); each model has one", {}},
+      of_state{"evolution", "Rate and state of velocity steps and holds (--evolution; identify help kinds)", {}};
   for (const Law& law : laws) {
     const LawInfo info = describe(law);
-    text.raw("  " + text.bold(std::string(to_string(law))) + "\n");
-    text.line(info.statement, 4);
-    text.line(info.equation, 4);
-    text.raw("    " + text.dim(wrapped(parameters_text(info.parameters), text.width(), 4)) + "\n");
-  }
-  text.heading("Rate and state of velocity steps and holds (--evolution; identify help kinds)");
-  for (const StateEvolution evolution : state_evolutions) {
-    text.raw("  " + text.bold(std::string(to_string(evolution))) + "\n");
-    text.line(fmt::format("mu = mu_0 + a ln(v/v0) + b ln(v0 theta/D_c), {}", equation_of(evolution)), 4);
-  }
-  text.raw("\n");
-  return text.take();
-}
-
-std::string render_effects(std::span<const EffectInfo> effects, const TerminalOptions& options) {
-  TerminalText text(options);
-  text.raw("Effects that can be added to a base law with --effect KEY (bounds: dry contacts)\n");
-  constexpr std::array<std::pair<EffectGroup, const char*>, 3> kGroups = {
-      {{EffectGroup::friction, "Friction"}, {EffectGroup::rig, "Rig"}, {EffectGroup::measurement, "Measurement"}}};
-  for (const auto& [group, title] : kGroups) {
-    text.heading(title);
-    for (const EffectInfo& effect : effects) {
-      if (effect.group != group) continue;
-      text.raw("  " + text.bold(effect.key) + "\n");
-      text.line(effect.statement, 4);
-      for (const EffectForm& form : effect.forms) {
-        text.line(effect.key + ":" + form.name + ": " + form.statement, 4);
-      }
-      const std::string needs = channels_text(effect.needs, false);
-      const std::string all = parameters_text(effect.parameters) + (needs.empty() ? "" : "; needs " + needs);
-      text.raw("    " + text.dim(wrapped(all, text.width(), 4)) + "\n");
+    of_speed.text(Kind::name, std::string(to_string(law)));
+    for (const std::string& text : {info.statement, info.equation, parameters_text(info.parameters)}) {
+      of_speed.text(Kind::detail, text);
     }
   }
-  if (!effects.empty()) text.next({"to read one in full", "identify effects " + effects.front().key});
-  return text.take();
+  for (const StateEvolution evolution : state_evolutions) {
+    of_state.text(Kind::name, std::string(to_string(evolution)));
+    of_state.text(Kind::detail, fmt::format("mu = mu_0 + a ln(v/v0) + b ln(v0 theta/D_c), {}", equation_of(evolution)));
+  }
+  Report report;
+  report.add({std::move(of_speed), std::move(of_state)});
+  return report;
 }
 
-std::string render_effect(const EffectInfo& effect, const TerminalOptions& options, const Fingerprint* print) {
-  TerminalText text(options);
-  add_effect(effect, text);
-  if (print != nullptr) {
-    text.raw("\n");
-    text.line("where it shows, simulated with " + print->conditions);
-    text.raw("\n" + render_fingerprint(*print, options));
+Report effects_report(std::span<const EffectInfo> effects) {
+  constexpr std::array<std::pair<EffectGroup, const char*>, 3> kGroups = {
+      {{EffectGroup::friction, "Friction"}, {EffectGroup::rig, "Rig"}, {EffectGroup::measurement, "Measurement"}}};
+  Report report;
+  ReportSection begin{"effects", "", {}};
+  begin.text(Kind::title, "Effects that can be added to a base law with --effect KEY (bounds: dry contacts)");
+  report.add({std::move(begin)});
+  for (const auto& [group, title] : kGroups) {
+    ReportSection section{title, title, {}};
+    for (const EffectInfo& effect : effects) {
+      if (effect.group != group) continue;
+      section.text(Kind::name, effect.key);
+      section.text(Kind::detail, effect.statement);
+      for (const EffectForm& form : effect.forms) {
+        section.text(Kind::detail, effect.key + ":" + form.name + ": " + form.statement);
+      }
+      const std::string needs = channels_text(effect.needs, false);
+      section.text(Kind::detail, parameters_text(effect.parameters) + (needs.empty() ? "" : "; needs " + needs));
+    }
+    report.add({std::move(section)});
   }
-  text.next(effect.kinematic_effect
-                ? Suggestion{"to look for it", "identify diagnose --radius 15mm trace.csv"}
-                : Suggestion{"to fit it", "identify --radius 15mm --effect " + effect.spelled() + " trace.csv"});
-  return text.take();
+  if (!effects.empty()) report.next = {{"to read one in full", "identify effects " + effects.front().key}};
+  return report;
+}
+
+Report effect_report(const EffectInfo& effect, const Fingerprint* print, const TerminalOptions& options) {
+  ReportSection about{"effect", "", {}}, alike{"alike", "Looks like", {}}, shown{"fingerprint", "Where it shows", {}};
+  about.text(Kind::title, fmt::format("{} ({})", effect.spelled(), to_string(effect.group)));
+  about.plain(effect.statement);
+  const std::string needs = channels_text(effect.needs, true);
+  Facts facts = {{"equation", effect.equation},
+                 {"source", effect.source},
+                 {"needs", needs.empty() ? "friction and velocity" : "friction, velocity, " + needs}};
+  if (!effect.experiment.empty()) facts.emplace_back("best shown by", effect.experiment);
+  for (const EffectForm& form : effect.forms) {
+    facts.emplace_back("other form", effect.key + ":" + form.name + ": " + form.statement);
+  }
+  about.add(ReportFacts{std::move(facts), kNames});
+  for (const LookAlike& pair : effect.pairs) {
+    alike.text(Kind::name, pair.key);
+    alike.text(Kind::detail, pair.test);
+  }
+  if (print != nullptr) {
+    shown.plain("simulated with " + print->conditions);
+    shown.text(Kind::drawing, render_fingerprint(*print, options));
+  }
+  Report report;
+  report.add({std::move(about), parameters_section(effect), std::move(alike), std::move(shown)});
+  report.next = {effect.kinematic_effect
+                     ? Suggestion{"to look for it", "identify diagnose --radius 15mm trace.csv"}
+                     : Suggestion{"to fit it", "identify --radius 15mm --effect " + effect.spelled() + " trace.csv"}};
+  return report;
 }
 
 }  // namespace tribofit

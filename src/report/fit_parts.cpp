@@ -10,55 +10,6 @@
 namespace tribofit {
 namespace {
 
-/// What a reader must know of a parameter: "at bound, correlated"; empty where nothing.
-std::string remarks_on(const Fit& fit, std::size_t index) {
-  const FitParameter& p = fit.parameters[index];
-  std::string remarks;
-  const auto add = [&](std::string_view remark) { remarks += (remarks.empty() ? "" : ", ") + std::string(remark); };
-  if (p.at_bound) add("at bound");
-  if (p.value == p.start && fit.protocol == Protocol::joint) add("unmoved");
-  const bool correlated = std::any_of(fit.correlations.begin(), fit.correlations.end(),
-                                      [&](const Correlation& c) { return c.first == index || c.second == index; });
-  if (correlated) add("correlated");
-  return remarks;
-}
-
-/// Value, errors, intervals, start and remarks of every parameter, in the digits that its error allows.
-ReportTable parameter_table(const Fit& fit, const Motion& motion, bool systematic) {
-  const auto any = [&](auto&& has) { return std::any_of(fit.parameters.begin(), fit.parameters.end(), has); };
-  const bool profile = any([](const FitParameter& p) {
-    return p.determined && std::isfinite(p.profile_lower95) && p.profile_lower95 < p.profile_upper95;
-  });
-  systematic = systematic || any([](const FitParameter& p) { return p.systematic != 0; });
-  ReportTable table;
-  table.text({"parameter"}).numbers({"value"}).numbers({"std error"}, 1).numbers({"relative"}, 2);
-  table.numbers({"95 % interval"});
-  if (profile) table.numbers({"by profile"});
-  if (systematic) table.numbers({"systematic"});
-  table.text({"unit"}).numbers({"start"}, 3).text({"remarks"});
-  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
-    const FitParameter& p = fit.parameters[k];
-    const int places = places_of(p);
-    const bool has_error = std::isfinite(p.std_error) && p.std_error > 0;
-    const auto text = [&](double si) { return fixed(shown(p, si), places); };
-    const auto interval = [&](double lower, double upper) {
-      return interval_text(shown(p, lower), shown(p, upper), places);
-    };
-    std::vector<std::string>& row = table.rows.emplace_back();
-    row = {full_name(p), p.determined ? text(p.value) : "not determined", has_error ? text(p.std_error) : "-",
-           has_error && p.value != 0 ? "(" + percent(p.std_error / std::abs(p.value)) + ")" : "",
-           has_error                                ? interval(p.lower95, p.upper95)
-           : p.determined || limits_text(p).empty() ? "-"
-                                                    : limits_text(p)};
-    if (profile) row.push_back(p.determined ? interval(p.profile_lower95, p.profile_upper95) : "-");
-    // Nothing declared that bears on it is not the same as no uncertainty.
-    if (systematic)
-      row.push_back(std::isnan(p.systematic) ? "unknown" : p.systematic > 0 && p.determined ? text(p.systematic) : "-");
-    row.insert(row.end(), {shown_unit(p, motion), significant(shown(p, p.start), 3), remarks_on(fit, k)});
-  }
-  return table;
-}
-
 /// How parameters move together: the covariance as correlations.
 ReportTable correlation_table(const Fit& fit) {
   const std::size_t n = fit.parameters.size();
@@ -159,26 +110,85 @@ Facts model_facts(const char* name, std::span<const Fit> fits, std::size_t best,
   return facts;
 }
 
-ReportTable law_table(const Fit& fit, const Motion& motion) {
-  ReportTable table;
-  table.text({"parameter"}).numbers({"value", "95 % interval"}).text({"unit"});
-  for (const FitParameter& p : fit.parameters) {
-    const int places = places_of(p);
-    const std::string limits = limits_text(p);
-    table.rows.push_back({full_name(p), p.determined ? fixed(shown(p, p.value), places) : "not determined",
-                          p.determined ? interval_text(shown(p, p.lower95), shown(p, p.upper95), places)
-                                       : (limits.empty() ? "-" : limits),
-                          shown_unit(p, motion) + (p.at_bound ? " (at bound)" : "")});
+std::vector<ShownValue> shown_values(std::span<const FitParameter> parameters, const Motion& motion) {
+  std::vector<ShownValue> values;
+  for (const FitParameter& p : parameters) {
+    values.push_back({full_name(p), shown(p, p.value), shown(p, p.std_error), shown(p, p.lower95), shown(p, p.upper95),
+                      shown_unit(p, motion), p.determined ? "" : limits_text(p), p.determined});
   }
+  return values;
+}
+
+ReportTable value_table(const char* name, const std::vector<ShownValue>& values) {
+  std::vector<std::string> errors, parts, intervals, units;
+  ReportTable table;
+  table.text({name}).numbers({"value"});
+  for (const ShownValue& v : values) {
+    const bool known = v.determined && std::isfinite(v.std_error) && v.std_error > 0;
+    const int places = known ? places_for(v.std_error) : 0;
+    table.rows.push_back({v.name, !v.determined ? "not determined"
+                                  : known       ? fixed(v.value, places)
+                                                : significant(v.value, 5)});
+    errors.push_back(known ? fixed(v.std_error, places) : "");
+    parts.push_back(known && v.value != 0 ? "(" + percent(v.std_error / std::abs(v.value)) + ")" : "");
+    intervals.push_back(known && std::isfinite(v.lower95) ? interval_text(v.lower95, v.upper95, places) : v.limits);
+    units.push_back(v.unit);
+  }
+  const auto some_unknown = [](std::vector<std::string> cells) {
+    const bool none = std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); });
+    std::replace(cells.begin(), cells.end(), std::string(), std::string(none ? "" : "-"));
+    return cells;
+  };
+  table.add({"std error", true, 1}, some_unknown(std::move(errors)));
+  table.add({"relative", true, 2}, std::move(parts));
+  table.add({"95 % interval", true}, some_unknown(std::move(intervals)));
+  table.add({"unit"}, std::move(units));
   return table;
 }
 
-void add_fits(std::span<const Fit> fits, std::size_t best, const Motion& motion, bool instruments_declared, Fits which,
+std::string remarks_on(std::span<const FitParameter> parameters, std::span<const Correlation> correlations,
+                       std::size_t index) {
+  const bool correlated = std::any_of(correlations.begin(), correlations.end(),
+                                      [&](const Correlation& c) { return c.first == index || c.second == index; });
+  std::string remarks = parameters[index].at_bound ? "at bound" : "";
+  if (correlated) remarks += remarks.empty() ? "correlated" : ", correlated";
+  return remarks;
+}
+
+ReportTable parameter_table(const Fit& fit, const Motion& motion, bool systematic) {
+  std::vector<std::string> profiles, errors, starts, remarks;
+  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+    const FitParameter& p = fit.parameters[k];
+    const auto text = [&](double si) { return fixed(shown(p, si), places_of(p)); };
+    const bool profile = p.determined && std::isfinite(p.profile_lower95) && p.profile_lower95 < p.profile_upper95;
+    profiles.push_back(profile ? interval_text(shown(p, p.profile_lower95), shown(p, p.profile_upper95), places_of(p))
+                               : "");
+    // Nothing declared that bears on it is not the same as no uncertainty.
+    errors.push_back(std::isnan(p.systematic)           ? "unknown"
+                     : p.systematic > 0 && p.determined ? text(p.systematic)
+                     : systematic || p.systematic != 0  ? "-"
+                                                        : "");
+    starts.push_back(significant(shown(p, p.start), 3));
+    remarks.push_back(remarks_on(fit.parameters, fit.correlations, k));
+    if (p.value == p.start && fit.protocol == Protocol::joint)
+      remarks.back() += remarks.back().empty() ? "unmoved" : ", unmoved";
+  }
+  ReportTable table = value_table("parameter", shown_values(fit.parameters, motion));
+  table.add({"by profile", true}, std::move(profiles));
+  table.add({"systematic", true}, std::move(errors));
+  table.add({"start", true, 3}, std::move(starts));
+  table.add({"remarks"}, std::move(remarks));
+  return table;
+}
+
+void add_fits(std::span<const Fit> fits, std::size_t best, const Motion& motion, bool instruments_declared,
               ReportSection& section) {
   if (fits.empty()) return;
   for (std::size_t k = 0; k < fits.size(); ++k) {
-    if (which == Fits::without_compared && joint_partner(fits, fits[k]) != nullptr) continue;
+    const std::size_t begin = section.items.size();
     add_fit(fits[k], motion, k == best && fits.size() > 1, instruments_declared, section);
+    if (joint_partner(fits, fits[k]) == nullptr) continue;  // a text compares its values with the joint fit's only
+    for (std::size_t i = begin; i < section.items.size(); ++i) section.items[i].medium = Medium::page;
   }
   section.heading("Intervals and range");
   const std::string between = motion.is_points() ? "from point to point" : "from cycle to cycle";

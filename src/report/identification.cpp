@@ -9,6 +9,7 @@
 #include "report/charts/styles.hpp"
 #include "report_parts.hpp"
 #include "tribofit/kinematics/health.hpp"
+#include "tribofit/report/terminal.hpp"
 
 namespace tribofit {
 namespace {
@@ -84,28 +85,28 @@ constexpr std::array<const char*, 8> kHeadings = {
     "Stick-slip", "Sliding",        "Points",         "Stick-slip",
     "Motion",     "Friction alone", "Velocity steps", "Slide, hold, slide"};
 
-std::string render_driven(const Identification& result, const TerminalOptions& options) {
-  TerminalText text(options);
-  add_record(result, text);
-  ReportSection section;
-  if (result.rate_state) add_rate_state(*result.rate_state, result.motion, section);
-  text.items(section.items);
-  text.result(result.warnings, verdict(result), next_command(result, options));
-  return text.take();
+/// The charts of the trace in their sections.
+void draw(const Identification& result, const ReportOptions& options, TraceSections& sections) {
+  constexpr std::size_t kDrawnModels = 3;
+  const auto beside = [&](const Fit& fit) { return fit.protocol == result.fits[result.best].protocol; };
+  const std::vector<const Fit*> models = drawn_models(result.fits, result.best, kDrawnModels, beside);
+  const std::vector<const Fit*> curves = drawn_curves(models, result.fits);
+  const DrawnTrace drawn(result, models, curves, "t1", 1, 0, options.threads);
+  sections.add_models(drawn);
+  if (!options.leave_out_cycles) sections.add_cycles(drawn);
 }
 
-Report report_of_driven(const Identification& result, const ReportOptions& options) {
-  Report report = titled_report("friction law", file_name(result.path), "Rate and state", verdict(result));
-  report.warnings = result.warnings;
-  report.facts = facts_of(result);
-  ReportSection response{"trace", "Model and measurement", {}}, law{"law", "Rate and state", {}};
-  if (result.rate_state) {
-    response.add(rate_state_charts(*result.rate_state));
-    add_rate_state(*result.rate_state, result.motion, law);
+/// What the motion shows, as the text has it; a page has the same at its head.
+ReportSection motion_section(const Identification& result) {
+  ReportSection section{
+      "motion", style_of(kind_of_record(result.motion, result.segmentation), kHeadings), {}, Medium::terminal};
+  Facts facts = stick_slip_facts(result);
+  for (auto& [name, value] : facts) {
+    if (name == "frequency") value += " (+/- is one standard error, here and below)";
   }
-  report.add({response, law,
-              run_section(command_line(options, {}, result.path), {&result, 1}, next_command(result, options))});
-  return report;
+  for (const std::string& note : result.segmentation.notes) facts.emplace_back("note", note);
+  section.add(ReportFacts{std::move(facts)});
+  return section;
 }
 
 }  // namespace
@@ -123,7 +124,9 @@ Suggestion next_command(const Identification& result, const ReportOptions& optio
   const std::vector<std::string> csv = {"--csv", csv_folder_for(result.path)};
   if (result.rate_state && result.rate_state->fitted()) {
     if (!options.csv_written) return {"to plot the response and to go on with the values of each step", same_with(csv)};
-    return {"to see the response on a page of charts", same_with({"--report", "steps.html"})};
+    if (!options.report_written)
+      return {"to see the response on a page of charts", same_with({"--report", "steps.html"})};
+    return {"to read what else can be said of steps and holds", "identify help kinds"};
   }
   if (result.force_statistics) return {"to see what else the file holds", command_line({"columns"}, {result.path})};
   if (!result.analysed || is_unusable(result)) {
@@ -144,61 +147,44 @@ Suggestion next_command(const Identification& result, const ReportOptions& optio
   return {"to see which effects can be added", "identify effects"};
 }
 
-std::string render_terminal(const Identification& result, const TerminalOptions& options) {
-  if (is_driven_in_steps(result.motion.kind)) return render_driven(result, options);
-  TerminalText text(options);
-  add_record(result, text);
-  text.heading(style_of(kind_of_record(result.motion, result.segmentation), kHeadings));
-  for (const auto& [name, value] : stick_slip_facts(result)) {
-    text.item(name, name == "frequency" ? value + " (+/- is one standard error, here and below)" : value);
-  }
-  const SpectralPeak& peak = result.spectral_peak;
-  if (peak.frequency > 0 && result.segmentation.kind == MotionKind::stick_slip) {
-    text.item("spectrum of v_r", "peak at " + significant(peak.frequency, 4) + " Hz; a plain FFT would say " +
-                                     significant(peak.bin_frequency, 4) + " Hz, in bins of " +
-                                     significant(peak.bin_width, 3) + " Hz");
-  }
-  for (const std::string& note : result.segmentation.notes) text.item("note", note);
-  ReportSection laws;
-  add_fits(result.fits, result.best, result.motion, options.instruments_declared, Fits::without_compared, laws);
-  add_comparisons(result.fits, result.best, result.motion, laws);
-  text.items(laws.items);
-  text.result(result.warnings, verdict(result), next_command(result, options));
-  if (result.analysed && !is_unusable(result)) {
-    text.look(ways_to_look("", options.arguments, result.path, options.report_written));
-  }
-  return text.take();
-}
-
 Report report_of(const Identification& result, const ReportOptions& options) {
-  if (is_driven_in_steps(result.motion.kind)) return report_of_driven(result, options);
-  constexpr std::size_t kDrawnModels = 3;
-  Report report = titled_report("friction law", file_name(result.path), "Friction law", verdict(result));
+  const bool driven = is_driven_in_steps(result.motion.kind);
+  Report report = titled_report("friction law", file_name(result.path), driven ? "Rate and state" : "Friction law",
+                                verdict(result));
   report.warnings = result.warnings;
-  report.facts = facts_of(result);
-  const Facts best = model_facts("best law", result.fits, result.best, result.motion);
-  report.facts.insert(report.facts.begin(), best.begin(), best.end());
-  const auto beside = [&](const Fit& fit) { return fit.protocol == result.fits[result.best].protocol; };
-  const std::vector<const Fit*> models = drawn_models(result.fits, result.best, kDrawnModels, beside);
-  const std::vector<const Fit*> curves = drawn_curves(models, result.fits);
+  report.facts = model_facts("best law", result.fits, result.best, result.motion);
+  const Facts record = facts_of(result);
+  report.facts.insert(report.facts.end(), record.begin(), record.end());
+  report.next = {next_command(result, options)};
+  if (!driven && result.analysed && !is_unusable(result)) {
+    for (Suggestion& way : ways_to_look("", options.arguments, result.path, options.report_written)) {
+      report.next.push_back(std::move(way));
+    }
+  }
   TraceSections sections;
-  const DrawnTrace drawn(result, models, curves, "t1", 1, 0, options.threads);
-  sections.add_models(drawn);
-  if (!options.leave_out_cycles) sections.add_cycles(drawn);
-  sections.trace.add(health_table({&result, 1}));
-  add_fits(result.fits, result.best, result.motion, options.instruments_declared, Fits::all, sections.law);
-  add_comparisons(result.fits, result.best, result.motion, sections.law);
-  if (!result.fits.empty()) sections.law.add(profile_charts(result.fits[result.best], result.motion, "best"));
-  sections.add_sources();
-  report.add({sections.trace, sections.law, sections.errors, sections.cycles,
-              run_section(command_line(options, {}, result.path), {&result, 1}, next_command(result, options))});
+  if (driven && result.rate_state) {
+    sections.law.title = "Rate and state";
+    sections.trace.add(rate_state_charts(*result.rate_state));
+    add_rate_state(*result.rate_state, result.motion, sections.law);
+  }
+  if (!driven) {
+    if (options.charts) draw(result, options, sections);
+    sections.trace.add(health_table({&result, 1}), Medium::page);
+    add_fits(result.fits, result.best, result.motion, options.instruments_declared, sections.law);
+    add_comparisons(result.fits, result.best, result.motion, sections.law);
+    if (!result.fits.empty()) sections.law.add(profile_charts(result.fits[result.best], result.motion, "best"));
+    sections.add_sources();
+    sections.errors.medium = Medium::page;
+  }
+  report.add({record_section(result), driven ? ReportSection{} : motion_section(result), sections.trace, sections.law,
+              sections.errors, sections.cycles, result_section(report),
+              run_section(report, command_line(options, {}, result.path), {&result, 1})});
   return report;
 }
 
 ReportSection cycles_section(const Identification& result) {
-  const std::vector<const Fit*> none;
   TraceSections sections;
-  sections.add_cycles(DrawnTrace(result, none, none, "t1"));
+  sections.add_cycles(DrawnTrace(result, {}, {}, "t1"));
   return sections.cycles;
 }
 

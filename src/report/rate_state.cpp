@@ -19,53 +19,28 @@ std::string of_steps(const RateStateFit& fit, std::size_t steps) {
   return steps == 1 ? "one step" : fmt::format("{} steps together", steps);
 }
 
-std::string remarks_of(const RateStateFit& fit, std::size_t index) {
-  std::vector<std::string> remarks;
-  if (fit.parameters[index].at_bound) remarks.emplace_back("at bound");
-  const bool correlated = std::any_of(fit.correlations.begin(), fit.correlations.end(),
-                                      [&](const Correlation& c) { return c.first == index || c.second == index; });
-  if (correlated) remarks.emplace_back("correlated");
-  return fmt::format("{}", fmt::join(remarks, ", "));
-}
-
-/// A value with its interval as a row of the table.
-std::vector<std::string> row_of(const std::string& name, double value, double error, double lower, double upper,
-                                const std::string& unit, std::string remarks) {
-  const bool known = std::isfinite(error) && error > 0;
-  const int places = known ? places_for(error) : 0;
-  return {name,
-          known ? fixed(value, places) : significant(value, 4),
-          known ? fixed(error, places) : "-",
-          known && value != 0 ? "(" + percent(error / std::abs(value)) + ")" : "",
-          known ? interval_text(lower, upper, places) : "-",
-          unit,
-          std::move(remarks)};
-}
-
 std::string critical_stiffness_text(const RateStateFit& fit) {
   return fit.states > 1 ? "k_c of two states" : "k_c = (b - a)/D_c";
 }
 
 ReportTable parameter_table_of(const RateStateFit& fit, const Motion& motion) {
-  ReportTable table;
-  table.text({"parameter"}).numbers({"value"}).numbers({"std error"}, 1).numbers({"relative"}, 2);
-  table.numbers({"95 % interval"}).text({"unit", "remarks"});
-  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
-    const FitParameter& p = fit.parameters[k];
-    const auto in_unit = [&](double si) { return shown(p, si); };
-    std::vector<std::string> row = row_of(p.parameter.name, in_unit(p.value), in_unit(p.std_error), in_unit(p.lower95),
-                                          in_unit(p.upper95), shown_unit(p, motion), remarks_of(fit, k));
-    if (!p.determined) row[1] = "not determined", row[2] = row[3] = "";
-    table.rows.push_back(std::move(row));
+  std::vector<ShownValue> values = shown_values(fit.parameters, motion);
+  std::vector<std::string> remarks;
+  for (std::size_t k = 0; k < values.size(); ++k) remarks.push_back(remarks_on(fit.parameters, fit.correlations, k));
+  const Estimate& rate = fit.rate_dependence;
+  if (std::isfinite(rate.value)) {
+    values.push_back({"a - b", rate.value, rate.std_error, fit.rate_dependence_lower95, fit.rate_dependence_upper95,
+                      friction_unit(motion)});
+    remarks.emplace_back();
   }
-  if (std::isfinite(fit.rate_dependence.value))
-    table.rows.push_back(row_of("a - b", fit.rate_dependence.value, fit.rate_dependence.std_error,
-                                fit.rate_dependence_lower95, fit.rate_dependence_upper95, friction_unit(motion), ""));
   if (std::isfinite(fit.stiffness_ratio)) {
     const double half = 0.25 * std::log(fit.stiffness_ratio_upper95 / fit.stiffness_ratio_lower95);
-    table.rows.push_back(row_of("k/k_c", fit.stiffness_ratio, fit.stiffness_ratio * half, fit.stiffness_ratio_lower95,
-                                fit.stiffness_ratio_upper95, "1", critical_stiffness_text(fit)));
+    values.push_back({"k/k_c", fit.stiffness_ratio, fit.stiffness_ratio * half, fit.stiffness_ratio_lower95,
+                      fit.stiffness_ratio_upper95, "1"});
+    remarks.push_back(critical_stiffness_text(fit));
   }
+  ReportTable table = value_table("parameter", values);
+  table.add({"remarks"}, std::move(remarks));
   return table;
 }
 

@@ -156,14 +156,13 @@ std::string spring_text(const Condition& known, double unit, std::string_view na
 Facts condition_facts(const Identification& r) {
   const Motion& motion = r.motion;
   const RateStateAnalysis* analysis = r.rate_state ? &*r.rate_state : nullptr;
-  constexpr double kGram = 1e-3, kNewtonPerMillimetre = 1e3;
   const SpringDrive& s = motion.spring;
   const auto& [of_radius, of_speed, of_load] = condition_infos;
   const std::pair<std::string, std::string> load = {std::string(of_load.name), condition(motion, of_load)};
   if (motion.kind == RecordKind::spring_slider) {
     return {{"drive", spring_text(s.velocity, kMillimetre, "mm/s")},
-            {"spring", spring_text(s.stiffness, kNewtonPerMillimetre, "N/mm")},
-            {"moving mass", spring_text(s.mass, kGram, "g")},
+            {"spring", spring_text(s.stiffness, 1e3, "N/mm")},
+            {"moving mass", spring_text(s.mass, 1e-3, "g")},
             load};
   }
   if (motion.kind == RecordKind::motion_only) {
@@ -183,25 +182,22 @@ Facts condition_facts(const Identification& r) {
   return {{std::string(of_radius.name), condition(motion, of_radius)}, {"disc speed", speed_text(motion)}, load};
 }
 
-void add_health(const Motion& motion, TerminalText& text) {
-  text.heading("Health");
-  bool found = false;
+/// What is not in order, or that all is.
+Facts health_facts(const Motion& motion) {
+  Facts facts;
+  std::size_t made = 0;
   for (const HealthItem& check : motion.health) {
+    made += health_check::was_made(check.message);
     if (check.status == HealthItem::Status::ok) continue;
-    found = true;
-    const std::string head =
-        check.status == HealthItem::Status::problem ? text.in_red("problem ") : text.in_yellow("warning ");
-    text.raw(fmt::format("  {} {:<16} {}\n", head, check.check, wrapped(check.message, text.width(), 28)));
+    facts.emplace_back(fmt::format("{:<8} {}", to_string(check.status), check.check), check.message);
   }
-  const auto made =
-      static_cast<std::size_t>(std::count_if(motion.health.begin(), motion.health.end(), [](const HealthItem& check) {
-        return health_check::was_made(check.message);
-      }));
   const std::size_t not_made = motion.health.size() - made;
-  if (!found) {
-    text.raw(fmt::format("  no problems found ({} checks{})\n", made,
-                         not_made > 0 ? fmt::format(", {} not possible", not_made) : ""));
+  if (facts.empty()) {
+    facts.emplace_back(fmt::format("no problems found ({} checks{})", made,
+                                   not_made > 0 ? fmt::format(", {} not possible", not_made) : ""),
+                       "");
   }
+  return facts;
 }
 
 /// Level and fall of the pull over the cycles, which need no velocity.
@@ -263,6 +259,12 @@ Facts stick_slip_facts(const Identification& r) {
   }
   if (r.friction_levels) add_friction_levels(*r.friction_levels, friction_unit(r.motion), facts);
   if (s.rms_velocity > 0) facts.emplace_back("RMS of v_b", significant(s.rms_velocity / kMillimetre, 4) + " mm/s");
+  if (const SpectralPeak& peak = r.spectral_peak; peak.frequency > 0 && s.kind == MotionKind::stick_slip) {
+    facts.emplace_back(
+        "spectrum of v_r",
+        fmt::format("peak at {} Hz; a plain FFT would say {} Hz, in bins of {} Hz", significant(peak.frequency, 4),
+                    significant(peak.bin_frequency, 4), significant(peak.bin_width, 3)));
+  }
   return facts;
 }
 
@@ -300,25 +302,29 @@ ReportTable health_table(std::span<const Identification> traces) {
   return table;
 }
 
-void add_record(const Identification& r, TerminalText& text) {
+ReportSection record_section(const Identification& r) {
   const Motion& m = r.motion;
-  text.raw(
-      fmt::format("{}  {}: {}\n", text.bold(fmt::format("tribofit {}", version)), printable(r.path), kind_text(r)));
+  ReportSection section{"record", "", {}, Medium::terminal};
+  section.text(ReportText::Kind::title, fmt::format("tribofit {}  {}: {}", version, printable(r.path), kind_text(r)));
   std::string line = record_sentence(r);
   if (m.trimmed > 0) {
     line += fmt::format("; the first {} s (run-up) left out", significant(static_cast<double>(m.trimmed) * m.step, 3));
   }
-  text.line(line);
+  section.plain(line);
   const std::vector<std::string>& elsewhere = r.segmentation.notes;  // they stand with the stick-slip
   for (const std::string& note : r.notes) {
-    if (std::find(elsewhere.begin(), elsewhere.end(), note) == elsewhere.end()) text.line(note);
+    if (std::find(elsewhere.begin(), elsewhere.end(), note) == elsewhere.end()) section.plain(note);
   }
-  text.heading("Conditions");
-  for (const auto& [name, value] : condition_facts(r)) text.item(name, value);
+  section.heading("Conditions");
+  Facts conditions = condition_facts(r);
   if (m.friction_kind == FrictionKind::force) {
-    text.item("friction", "is a force in newtons: no normal force is known");
+    conditions.emplace_back("friction", "is a force in newtons: no normal force is known");
   }
-  if (!is_driven_in_steps(m.kind)) add_health(m, text);
+  section.add(ReportFacts{std::move(conditions)});
+  if (is_driven_in_steps(m.kind)) return section;
+  section.heading("Health");
+  section.add(ReportFacts{health_facts(m), 26});
+  return section;
 }
 
 }  // namespace tribofit

@@ -21,7 +21,10 @@ std::string file_name(const std::string& path) {
   return one_line(name.empty() ? path : name);
 }
 
-void ReportSection::add(ReportItem item) {
+void ReportSection::add(ReportItem item, Medium where) {
+  item.medium = where;
+  if (const auto* text = std::get_if<ReportText>(&item); text != nullptr && text->text.empty()) return;
+  if (const auto* facts = std::get_if<ReportFacts>(&item); facts != nullptr && facts->facts.empty()) return;
   if (const auto* table = std::get_if<ReportTable>(&item); table != nullptr && table->rows.empty()) return;
   if (auto* chart = std::get_if<Chart>(&item)) {
     std::erase_if(chart->lines, [](const ChartLine& line) { return line.x.empty(); });
@@ -29,6 +32,12 @@ void ReportSection::add(ReportItem item) {
     if (chart->lines.empty() && chart->bars.empty() && !chart->map) return;
   }
   items.push_back(std::move(item));
+}
+
+void ReportTable::add(ReportColumn column, std::vector<std::string> cells) {
+  if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); })) return;
+  columns.push_back(std::move(column));
+  for (std::size_t k = 0; k < rows.size(); ++k) rows[k].push_back(std::move(cells[k]));
 }
 
 void ReportSection::add(std::vector<Chart> charts) {
@@ -39,6 +48,12 @@ void Report::add(std::vector<ReportSection> more) {
   for (ReportSection& section : more) {
     if (!section.items.empty()) sections.push_back(std::move(section));
   }
+}
+
+void Report::keep_for(Medium medium) {
+  const auto elsewhere = [&](const auto& part) { return part.medium != Medium::any && part.medium != medium; };
+  std::erase_if(sections, elsewhere);
+  for (ReportSection& section : sections) std::erase_if(section.items, elsewhere);
 }
 
 Report titled_report(const std::string& kind, const std::string& title, const std::string& made, std::string lead) {
@@ -112,16 +127,18 @@ void TraceSections::add_cycles(const DrawnTrace& drawn) {
   if (shows_cycles(drawn)) cycles.add(record_chart(drawn));
 }
 
-ReportSection run_section(const std::string& command, const std::string& more) {
-  ReportSection section{"run", "What was run", {}};
-  section.plain("This report is made by");
-  section.command(command);
-  section.soft(fmt::format("Made by tribofit {}. Charts by plotly.js (MIT licence).{}", version, more));
+ReportSection result_section(const Report& report, const std::string& title) {
+  ReportSection section{"result", title, {}, Medium::terminal};
+  for (const std::string& warning : report.warnings) section.warning(warning);
+  section.plain(report.lead);
   return section;
 }
 
-ReportSection run_section(const std::string& command, std::span<const Identification> traces, const Suggestion& next) {
-  ReportSection section = run_section(command);
+ReportSection run_section(const Report& report, const std::string& command, std::span<const Identification> traces,
+                          const std::string& more) {
+  ReportSection section{"run", "What was run", {}, Medium::page};
+  section.plain("This report is made by");
+  section.command(command);
   ReportTable inputs("Input");
   inputs.text({"file"}).numbers({"samples", "duration [s]"}).text({"checksum of the rows (XXH64)"});
   std::vector<std::string> notes;
@@ -133,9 +150,11 @@ ReportSection run_section(const std::string& command, std::span<const Identifica
   section.add(std::move(inputs));
   if (!notes.empty()) section.heading("How the input was read");
   for (std::string& note : notes) section.item(std::move(note));
-  section.plain("Next, " + next.reason + ":");
-  section.command(next.command);
-  std::rotate(section.items.begin() + 2, section.items.begin() + 3, section.items.end());  // its maker is said last
+  if (!report.next.empty()) {
+    section.plain("Next, " + report.next.front().reason + ":");
+    section.command(report.next.front().command);
+  }
+  section.soft(fmt::format("Made by tribofit {}. Charts by plotly.js (MIT licence).{}", version, more));
   return section;
 }
 

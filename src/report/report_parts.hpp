@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "commands.hpp"
 #include "report/charts/trace_charts.hpp"
-#include "terminal_text.hpp"
 
 namespace tribofit {
 
@@ -24,7 +24,7 @@ Facts facts_of(const Identification& record);
 /// Checks, the worst first; with the trace each belongs to where there are several.
 ReportTable health_table(std::span<const Identification> traces);
 /// Name, size and reading of the trace, conditions and health: how the text of identify, rig and twin begins.
-void add_record(const Identification& record, TerminalText& text);
+ReportSection record_section(const Identification& record);
 
 /// How good the best fit is, in one sentence an engineer would say.
 std::string verdict(const Identification& result);
@@ -32,19 +32,31 @@ std::string verdict(const Identification& result);
 /// What to do next with a trace and its fits.
 Suggestion next_command(const Identification& result, const ReportOptions& options);
 
-/// What is said of each fit: all of them, or those that the comparison of the protocols does not hold.
-enum class Fits { all, without_compared };
 /// Every fit with its equation, parameters, errors, correlations and notes, and what their intervals are; nothing where
 /// there are no fits.
-void add_fits(std::span<const Fit> fits, std::size_t best, const Motion& motion, bool instruments_declared, Fits which,
+void add_fits(std::span<const Fit> fits, std::size_t best, const Motion& motion, bool instruments_declared,
               ReportSection& section);
 /// Per-cycle extremes beside the joint fit and by how much they differ, then the best law against each other one.
 void add_comparisons(std::span<const Fit> fits, std::size_t best, const Motion& motion, ReportSection& section);
 
 /// A model and its parameters: what a reader looks for first. name: "best law"; nothing where there is no fit.
 Facts model_facts(const char* name, std::span<const Fit> fits, std::size_t best, const Motion& motion);
-/// Value, 95 % interval and unit of each parameter of a model.
-ReportTable law_table(const Fit& fit, const Motion& motion);
+
+/// A value with its errors, in the unit people read.
+struct ShownValue {
+  std::string name;
+  double value, std_error, lower95, upper95;
+  std::string unit, limits = {};  ///< limits: "at least 28", of one that is not determined
+  bool determined = true;
+};
+/// A row a value, in the digits that its error allows; columns that say nothing are left out. name: of the first one.
+ReportTable value_table(const char* name, const std::vector<ShownValue>& values);
+std::vector<ShownValue> shown_values(std::span<const FitParameter> parameters, const Motion& motion);
+/// What a reader must know of a parameter: "at bound, correlated"; empty where nothing.
+std::string remarks_on(std::span<const FitParameter> parameters, std::span<const Correlation> correlations,
+                       std::size_t index);
+/// Every parameter of a fit; systematic: instruments were declared.
+ReportTable parameter_table(const Fit& fit, const Motion& motion, bool systematic);
 
 /// The name of a file without its folder, as text that is valid UTF-8.
 std::string file_name(const std::string& path);
@@ -69,10 +81,13 @@ struct TraceSections {
   void add_cycles(const DrawnTrace& drawn);
 };
 
-/// What was run: the command and what made the report; `more` is said behind that.
-ReportSection run_section(const std::string& command, const std::string& more = "");
-/// The same with the inputs and their checksums, how they were read, what to do next.
-ReportSection run_section(const std::string& command, std::span<const Identification> traces, const Suggestion& next);
+/// How a text ends, but for what to do next: warnings and the lead of the report.
+ReportSection result_section(const Report& report, const std::string& title = "Result");
+
+/// How a page ends. What was run: the command, the inputs with their checksums and how they were read, what to do next,
+/// and what made the report; `more` is said behind that.
+ReportSection run_section(const Report& report, const std::string& command, std::span<const Identification> traces = {},
+                          const std::string& more = "");
 
 /// A quantity of the rig, in the unit people read.
 struct ShownRigValue {

@@ -7,7 +7,6 @@
 #include "numbers.hpp"
 #include "report_parts.hpp"
 #include "tribofit/report/json.hpp"
-#include "tribofit/report/terminal.hpp"
 
 namespace tribofit {
 
@@ -26,19 +25,16 @@ ShownRig shown_rig(const RigFit& rig) {
 namespace {
 
 ReportTable rig_table(const RigFit& rig) {
-  ReportTable table;
-  table.text({"quantity"}).numbers({"value", "std error"}).numbers({"relative"}, 1).numbers({"95 % interval"});
-  table.text({"unit", ""});
+  std::vector<ShownValue> values;
+  std::vector<std::string> systematic;
   for (const ShownRigValue& q : shown_rig(rig).all()) {
     const RigValue& v = q.value;
     if (!v.determined) continue;
-    const int places = places_for(v.std_error / q.si);
-    table.rows.push_back(
-        {q.name, fixed(v.value / q.si, places), fixed(v.std_error / q.si, places),
-         v.value != 0 ? "(" + percent(v.std_error / std::abs(v.value)) + ")" : "",
-         interval_text(v.lower95 / q.si, v.upper95 / q.si, places), q.unit,
-         v.systematic > 0 ? fmt::format("+/- {} systematic", significant(v.systematic / q.si, 2)) : ""});
+    values.push_back({q.name, v.value / q.si, v.std_error / q.si, v.lower95 / q.si, v.upper95 / q.si, q.unit});
+    systematic.push_back(v.systematic > 0 ? significant(v.systematic / q.si, 2) : "");
   }
+  ReportTable table = value_table("quantity", values);
+  table.add({"systematic", true}, std::move(systematic));
   return table;
 }
 
@@ -61,15 +57,7 @@ Facts behind_rig(const RigFit& rig) {
   return facts;
 }
 
-void add_rig(const RigFit& rig, TerminalText& text) {
-  const ReportTable table = rig_table(rig);
-  if (table.rows.empty() && rig.messages.empty()) return;
-  text.heading("Rig");
-  if (!table.rows.empty()) text.table(table);
-  for (const auto& [name, value] : behind_rig(rig)) text.item(name, value);
-}
-
-Suggestion next_of(const RigIdentification& result, const TerminalOptions& options) {
+Suggestion next_of(const RigIdentification& result, const ReportOptions& options) {
   const Identification& trace = result.trace;
   const auto of_verb = [&](std::vector<std::string> verb, const std::vector<std::string>& more = {}) {
     return command_line(joined(words_of(std::move(verb), options.arguments, {"--keep-high-pass"}), more), {trace.path});
@@ -129,39 +117,29 @@ Json rig_json(const RigFit& rig) {
   return json;
 }
 
-std::string render_rig(const RigIdentification& result, const TerminalOptions& options) {
-  TerminalText text(options);
-  add_record(result.trace, text);
-  add_rig(result.rig, text);
-  text.result(result.trace.warnings, verdict_on(result.rig), next_of(result, options));
-  return text.take();
-}
-
 Report report_of(const RigIdentification& result, const ReportOptions& options) {
   const Identification& trace = result.trace;
   const RigFit& rig = result.rig;
   Report report = titled_report("rig", file_name(trace.path), "Mass, damping and stiffness,", verdict_on(rig));
   report.warnings = trace.warnings;
+  report.next = {next_of(result, options)};
   for (const ShownRigValue& q : shown_rig(rig).all()) {
     if (!q.value.determined) continue;
     report.facts.emplace_back(q.name, with_error(q.value.value / q.si, q.value.std_error / q.si) + unit_behind(q.unit));
   }
   const Facts record = facts_of(trace);
   report.facts.insert(report.facts.end(), record.begin(), record.end());
-  ReportSection values{"rig", "The rig", {}};
+  ReportSection values{"rig", "Rig", {}};
   values.add(rig_table(rig));
-  for (const auto& [name, text] : behind_rig(rig)) values.item(capitalised(name) + ": " + text);
-  const std::vector<const Fit*> none;
+  values.add(ReportFacts{behind_rig(rig)});
   TraceSections sections;
-  sections.add_trace(DrawnTrace(trace, none, none, "t1"));
+  if (options.charts) sections.add_trace(DrawnTrace(trace, {}, {}, "t1"));
   sections.trace.title = "The record";
-  sections.trace.add(health_table({&trace, 1}));
+  sections.trace.add(health_table({&trace, 1}), Medium::page);
   const std::string path = options.inputs.empty() ? trace.path : options.inputs.front();
-  TerminalOptions as_typed;
-  static_cast<ReportOptions&>(as_typed) = options;
-  report.add({std::move(values), std::move(sections.trace), std::move(sections.cycles),
-              run_section(command_line(words_of({"rig"}, options.arguments), {path}), {&trace, 1},
-                          next_of(result, as_typed))});
+  report.add({record_section(trace), std::move(values), std::move(sections.trace), std::move(sections.cycles),
+              result_section(report),
+              run_section(report, command_line(words_of({"rig"}, options.arguments), {path}), {&trace, 1})});
   return report;
 }
 

@@ -8,11 +8,14 @@
 #include <set>
 #include <variant>
 
+#include "commands.hpp"
 #include "numbers.hpp"
+#include "tribofit/ingest/spelling.hpp"
+#include "tribofit/report/terminal.hpp"
 
 namespace tribofit {
 
-constexpr std::size_t kIndent = 2;  // of tables
+constexpr std::size_t kIndent = 2, kMostRows = 40;  // of tables
 
 namespace {
 
@@ -63,117 +66,165 @@ std::vector<std::vector<std::string>> in_blocks(const ReportTable& table, std::s
   return blocks;
 }
 
-}  // namespace
+/// Text for a terminal, part by part: sentences broken to its width, tables whose columns line up, colours where they
+/// can be shown, and "+/-" as one sign where it can.
+class TerminalText {
+ public:
+  explicit TerminalText(const TerminalOptions& options)
+      : colour_(options.colour), width_(std::clamp<std::size_t>(options.width, 40, 120)), unicode_(options.unicode) {}
 
-TerminalText::TerminalText(const TerminalOptions& options)
-    : width_(std::clamp<std::size_t>(options.width, 40, 120)), unicode_(options.unicode) {
-  if (!options.colour) return;
-  bold_ = "\033[1m";
-  dim_ = "\033[2m";
-  yellow_ = "\033[33m";
-  red_ = "\033[31m";
-  off_ = "\033[0m";
-}
-
-std::string TerminalText::in_colour(std::string_view code, std::string_view text) const {
-  return std::string(code) + std::string(text) + std::string(off_);
-}
-
-std::string TerminalText::with_signs(std::string_view text) const {
-  std::string out(text);
-  if (!unicode_) return out;
-  for (std::size_t at = out.find("+/-"); at != std::string::npos; at = out.find("+/-", at)) {
-    out.replace(at, 3, "\u00b1");
-  }
-  return out;
-}
-
-void TerminalText::heading(std::string_view title) {
-  text_ += "\n" + bold(with_signs(title)) + "\n";
-}
-
-void TerminalText::line(std::string_view sentence, std::size_t indent, std::size_t hanging) {
-  if (sentence.empty()) return;
-  const std::string text = wrapped(with_signs(sentence), width_, hanging == kAll ? indent : hanging);
-  text_ += std::string(indent, ' ') + text + "\n";
-}
-
-void TerminalText::lines(const std::vector<std::string>& sentences, std::size_t indent, std::size_t hanging) {
-  for (const std::string& sentence : sentences) line(sentence, indent, hanging);
-}
-
-void TerminalText::item(std::string_view name, std::string_view text, std::size_t name_width) {
-  text_ += fmt::format("  {:<{}}{}\n", name, name_width, wrapped(with_signs(text), width_, name_width + 2));
-}
-
-void TerminalText::warning(std::string_view text) {
-  text_ += "  " + in_yellow("warning") + " " + wrapped(with_signs(text), width_, 10) + "\n";
-}
-
-void TerminalText::table(const ReportTable& all, std::size_t most) {
-  if (all.rows.empty()) return;
-  if (!all.caption.empty()) heading(all.caption);
-  ReportTable table = all;
-  table.rows.resize(std::min(most, table.rows.size()));
-  for (std::vector<std::string>& row : table.rows) {
-    for (std::string& cell : row) cell = with_signs(cell);
-  }
-  int detail = 0;
-  for (const ReportColumn& column : table.columns) detail = std::max(detail, column.detail);
-  std::vector<std::string> rows;
-  for (; detail >= 0; --detail) {
-    rows = aligned(table, kIndent, detail);
-    if (widest(rows) <= width_) break;
-  }
-  const auto show = [&](const std::vector<std::string>& lines) {
-    for (std::size_t k = 0; k < lines.size(); ++k) text_ += (k == 0 ? dim(lines[k]) : lines[k]) + "\n";
-  };
-  if (widest(rows) <= width_ || table.columns.size() < 3) {
-    show(rows);
-  } else {
-    const auto blocks = in_blocks(table, width_);
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-      if (b > 0) text_ += "\n";
-      show(blocks[b]);
+  /// What a terminal shows of a section, under its title unless that of the first item says enough.
+  void section(const ReportSection& section) {
+    if (section.medium == Medium::page) return;
+    bool titled = section.title.empty();
+    for (const ReportItem& one : section.items) {
+      const auto* table = std::get_if<ReportTable>(&one);
+      const auto* text = std::get_if<ReportText>(&one);
+      const bool is_drawn = std::holds_alternative<Chart>(one) || std::holds_alternative<Animation>(one);
+      if (one.medium == Medium::page || is_drawn || (table != nullptr && table->folded)) continue;
+      titled = titled || (text != nullptr && text->kind == ReportText::Kind::heading) ||
+               (table != nullptr && !table->caption.empty());
+      if (!titled) heading(section.title);
+      titled = true;
+      std::visit([&](const auto& own) { item(own); }, one);
     }
   }
-  if (all.rows.size() > most) line(fmt::format("... and {} more in {}", all.rows.size() - most, all.file));
-}
 
-void TerminalText::items(const std::vector<ReportItem>& items) {
-  for (const ReportItem& item : items) {
-    if (const auto* shown = std::get_if<ReportTable>(&item); shown != nullptr && !shown->folded) table(*shown);
-    const auto* text = std::get_if<ReportText>(&item);
-    if (text == nullptr) continue;
-    using Kind = ReportText::Kind;
-    if (text->kind == Kind::heading) heading(text->text);
-    if (text->kind == Kind::warning) warning(text->text);
-    if (text->kind == Kind::plain || text->kind == Kind::soft) line(text->text);
-    if (text->kind == Kind::item) line(text->text, 2, 4);
-    if (text->kind == Kind::command) text_ += folded_command(text->text, width_) + "\n";
+  /// What to do next, then ways to look at the same result.
+  void next(const std::vector<Suggestion>& ways) {
+    for (std::size_t k = 0; k < ways.size(); ++k) {
+      const std::string reason = k == 0 ? "Next, " + ways[k].reason : capitalised(ways[k].reason);
+      text_ += (k == 0 ? "\n" : "") + wrapped(reason + ":", width_, 0) + "\n" +
+               folded_command(ways[k].command, width_) + "\n";
+    }
   }
-}
 
-void TerminalText::section(const ReportSection& section) {
-  if (!section.items.empty()) heading(section.title);
-  items(section.items);
-}
+  std::string take() { return std::move(text_); }
 
-void TerminalText::next(const Suggestion& next) {
-  text_ += "\n" + wrapped("Next, " + next.reason + ":", width_, 0) + "\n" + folded_command(next.command, width_) + "\n";
-}
+ private:
+  static constexpr std::string_view kBold = "\033[1m", kDim = "\033[2m", kYellow = "\033[33m", kRed = "\033[31m";
 
-void TerminalText::look(const std::vector<Suggestion>& ways) {
-  for (const Suggestion& way : ways) {
-    text_ += wrapped(capitalised(way.reason) + ":", width_, 0) + "\n" + folded_command(way.command, width_) + "\n";
+  std::string in(std::string_view colour, std::string_view text) const {
+    return colour_ ? fmt::format("{}{}\033[0m", colour, text) : std::string(text);
   }
-}
+  /// "+/-" as the sign where it can be shown.
+  std::string with_signs(const std::string& text) const { return unicode_ ? replaced(text, "+/-", "\u00b1") : text; }
+  void heading(const std::string& title) { text_ += "\n" + in(kBold, with_signs(title)) + "\n"; }
+  void line(const std::string& sentence, std::size_t indent, std::size_t hanging) {
+    text_ += std::string(indent, ' ') + wrapped(with_signs(sentence), width_, hanging) + "\n";
+  }
 
-void TerminalText::result(const std::vector<std::string>& warnings, std::string_view verdict, const Suggestion& then) {
-  heading("Result");
-  for (const std::string& text : warnings) warning(text);
-  line(verdict);
-  next(then);
+  void item(const ReportText& item) {
+    const std::string& text = item.text;
+    switch (item.kind) {
+      case ReportText::Kind::title:
+        text_ += in(kBold, wrapped(with_signs(text), width_, 2)) + "\n";
+        break;
+      case ReportText::Kind::heading:
+        heading(text);
+        break;
+      case ReportText::Kind::name:
+        text_ += "  " + in(kBold, text) + "\n";
+        break;
+      case ReportText::Kind::detail:
+        line(text, 4, 4);
+        break;
+      case ReportText::Kind::warning:
+        text_ += "  " + in(kYellow, "warning") + " " + wrapped(with_signs(text), width_, 10) + "\n";
+        break;
+      case ReportText::Kind::item:
+        line(text, 2, 4);
+        break;
+      case ReportText::Kind::command:
+        text_ += folded_command(text, width_) + "\n";
+        break;
+      case ReportText::Kind::drawing:
+        text_ += "\n" + text;
+        break;
+      case ReportText::Kind::plain:
+      case ReportText::Kind::soft:
+        line(text, 2, 2);
+    }
+  }
+
+  void item(const ReportFacts& facts) {
+    const std::size_t width = facts.name_width;
+    for (const auto& [name, value] : facts.facts) {
+      if (value.empty()) {
+        line(name, 2, 2);
+        continue;
+      }
+      const std::string status = name.substr(0, name.find(' '));
+      std::string shown = fmt::format("{:<{}}", name, width);
+      if (status == "problem" || status == "warning") {
+        shown.replace(0, status.size(), in(status == "problem" ? kRed : kYellow, status));
+      }
+      text_ += "  " + shown + wrapped(with_signs(value), width_, width + 2) + "\n";
+    }
+  }
+
+  /// A table with its caption as heading: without the columns of most detail where the terminal is narrow, and in
+  /// blocks one below the other where it is too narrow for the others. Without names no row is above it.
+  void item(ReportTable table) {
+    if (!table.caption.empty()) heading(table.caption);
+    const std::size_t count = table.rows.size();
+    table.rows.resize(std::min(kMostRows, count));
+    for (std::vector<std::string>& row : table.rows) {
+      for (std::string& cell : row) cell = with_signs(cell);
+    }
+    int detail = 0;
+    for (const ReportColumn& column : table.columns) detail = std::max(detail, column.detail);
+    const ReportTable::Bars& bars = table.bars;
+    std::vector<std::string> rows;
+    for (; detail >= 0; --detail) {
+      rows = aligned(table, kIndent, detail);
+      if (widest(rows) + (bars.values.empty() ? 0 : bars.shortest) <= width_) break;
+    }
+    if (!bars.values.empty()) {
+      const std::size_t used = widest(rows), room = used < width_ ? std::min(width_ - used, bars.longest) : 0;
+      for (std::size_t k = 0; k < bars.values.size(); ++k) {
+        table.rows[k][bars.column] = bar(bars.values[k], bars.full, room, unicode_, bars.pale);
+      }
+      rows = aligned(table, kIndent, std::max(detail, 0));
+    }
+    const bool named = std::any_of(table.columns.begin(), table.columns.end(),
+                                   [](const ReportColumn& column) { return !column.name.empty(); });
+    const auto show = [&](const std::vector<std::string>& lines) {
+      for (std::size_t k = named ? 0 : 1; k < lines.size(); ++k)
+        text_ += (k == 0 ? in(kDim, lines[k]) : lines[k]) + "\n";
+    };
+    if (widest(rows) <= width_ || table.columns.size() < 3) {
+      show(rows);
+    } else {
+      const auto blocks = in_blocks(table, width_);
+      for (std::size_t b = 0; b < blocks.size(); ++b) {
+        if (b > 0) text_ += "\n";
+        show(blocks[b]);
+      }
+    }
+    if (!bars.pale_name.empty()) {
+      const auto [pale, full] = bar_signs(unicode_);
+      line(fmt::format("{} {}; {} {}", pale, bars.pale_name, full, bars.full_name), 2, 2);
+    }
+    if (count > kMostRows) line(fmt::format("... and {} more in {}", count - kMostRows, table.file), 2, 2);
+  }
+
+  static void item(const Chart&) {}
+  static void item(const Animation&) {}
+
+  bool colour_;
+  std::size_t width_;
+  bool unicode_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string render_terminal(const Report& report, const TerminalOptions& options) {
+  TerminalText text(options);
+  for (const ReportSection& section : report.sections) text.section(section);
+  text.next(report.next);
+  return text.take();
 }
 
 std::size_t displayed(std::string_view text) {

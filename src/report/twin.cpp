@@ -11,13 +11,10 @@
 #include "tribofit/report/json.hpp"
 #include "tribofit/report/report.hpp"
 #include "tribofit/report/study.hpp"
-#include "tribofit/report/terminal.hpp"
 #include "tribofit/study/twin.hpp"
 
 namespace tribofit {
 namespace {
-
-constexpr std::size_t kBins = 400;
 
 /// "0.84990 +/- 0.00022 kg, 16.1970 +/- 0.0021 N/mm, damping ratio ..., 21.9712 +/- 0.0025 Hz".
 std::string rig_text(const RigFit& rig) {
@@ -211,7 +208,7 @@ Chart motion_chart(const Twin& twin, const std::vector<DrawnMotion>& motions, co
                   {{{.quantity = "velocity v_{b}", .unit = "mm/s"}, &DrawnMotion::velocity, kMillimetre},
                    {{.quantity = unit == "N" ? "friction" : "mu", .unit = unit}, &DrawnMotion::friction, 1},
                    {{.quantity = "displacement", .unit = "mm"}, &DrawnMotion::displacement, kMillimetre}},
-                  kBins, stroke_for(k++), chart);
+                  stroke_for(k++), chart);
   }
   shade_sticks({"measured", twin.measured}, chart);
   if (twin.measured.size() > 0) chart.marks.push_back(disc_mark(twin.measured.disc_velocity));
@@ -221,7 +218,7 @@ Chart motion_chart(const Twin& twin, const std::vector<DrawnMotion>& motions, co
 Chart portrait_chart(const Twin& twin, const std::vector<DrawnMotion>& motions) {
   Chart chart = portrait_plane("twin-portrait", "Portraits, measured and simulated", twin.measured.disc_velocity);
   std::size_t k = 0;
-  for (const DrawnMotion& motion : motions) add_loop(motion, kBins, stroke_for(k++), chart);
+  for (const DrawnMotion& motion : motions) add_loop(motion, stroke_for(k++), chart);
   return chart;
 }
 
@@ -235,20 +232,6 @@ Animation animation_of(const Twin& twin, const std::vector<DrawnMotion>& motions
 }
 
 }  // namespace
-
-std::string render_twin(const TwinIdentification& result, const TerminalOptions& options) {
-  TerminalText text(options);
-  const std::vector<std::string> warnings = warnings_of(result, options.arguments);
-  if (warnings.size() > result.trace.warnings.size()) text.warning(warnings.front());
-  add_record(result.trace, text);
-  if (result.twin.reason.empty()) {
-    text.section(twin_model(result));
-    text.table(twin_table(result.twin));
-    text.line(twin_note(result.twin));
-  }
-  text.result(result.trace.warnings, twin_verdict(result), next_after_twin(result, options.arguments));
-  return text.take();
-}
 
 std::string to_json(const TwinIdentification& result, const JsonOptions& options) {
   const Identification& trace = result.trace;
@@ -265,7 +248,11 @@ Report report_of(const TwinIdentification& result, const ReportOptions& options)
   const Twin& twin = result.twin;
   Report report = titled_report("twin", file_name(trace.path),
                                 "The measured motion beside those that law and rig predict,", twin_verdict(result));
+  report.warnings = trace.warnings;
+  ReportSection end = result_section(report), first{"first", "", {}, Medium::terminal};
   report.warnings = warnings_of(result, options.arguments);
+  if (report.warnings.size() > trace.warnings.size()) first.warning(report.warnings.front());
+  report.next = {next_after_twin(result, options.arguments)};
   report.facts = facts_of(trace);
   report.facts.emplace_back("simulations of each law", std::to_string(twin.simulations));
   for (std::size_t c = 0; c < twin.columns.size(); ++c) {
@@ -273,23 +260,24 @@ Report report_of(const TwinIdentification& result, const ReportOptions& options)
     report.facts.emplace_back("off by, " + twin.short_name(c),
                               std::isfinite(rms) ? fmt::format("{:.1f} standard errors", rms) : "-");
   }
+  report.add({std::move(first), record_section(trace)});
   if (twin.reason.empty() && !twin.columns.empty()) {
     ReportSection motion{"motion", "Measured and simulated motion", {}};
-    if (const std::vector<DrawnMotion> motions = motions_of(twin); !motions.empty()) {
+    ReportSection measures{"measures", "Measures in standard errors", {}};
+    if (const auto motions = motions_of(twin); !motions.empty()) {
       motion.add(motion_chart(twin, motions, friction_unit(trace.motion)));
       motion.add(portrait_chart(twin, motions));
       motion.add(animation_of(twin, motions));
     }
-    ReportSection measures{"measures", "Measures in standard errors", {}};
     measures.add(differences_chart(twin));
     measures.add(twin_table(twin));
-    measures.soft(twin_note(twin) + ".");
+    measures.soft(twin_note(twin));
     report.add({std::move(motion), std::move(measures), twin_model(result)});
   }
   const std::string path = options.inputs.empty() ? trace.path : options.inputs.front();
-  report.add({{"health", "Health of the data", {health_table({&trace, 1})}},
-              run_section(command_line(words_of({"twin"}, options.arguments), {path}), {&trace, 1},
-                          next_after_twin(result, options.arguments))});
+  report.add({{"health", "Health of the data", {health_table({&trace, 1})}, Medium::page},
+              std::move(end),
+              run_section(report, command_line(words_of({"twin"}, options.arguments), {path}), {&trace, 1})});
   return report;
 }
 

@@ -46,7 +46,9 @@ Report Prepared::draw(TracePart part, const Selection& selection, ReportOptions 
   if (!known) known = drawn_cycles();  // meanwhile other pages looked at so many parts that this one was not kept
   cycles = known;
   options.leave_out_cycles = true;
-  return report_of(drawn_, options);
+  Report report = report_of(drawn_, options);
+  report.keep_for(Medium::page);
+  return report;
 }
 
 std::shared_ptr<const ReportSection> Prepared::drawn_cycles() const {

@@ -47,7 +47,9 @@ class CampaignReport : public ::testing::Test {
       const EarlierTable table = read_earlier((*shop_ / "table.csv").string(), pooled.groups);
       comparison = ComparisonReport{compare_with(table, pooled.groups), statements_of(results, runs, pooled.groups)};
     }
-    return report_of(results, runs, pooled, comparison);
+    Report all = report_of(results, runs, pooled, comparison);
+    all.keep_for(Medium::page);
+    return all;
   }
   static Workshop* shop_;
 };

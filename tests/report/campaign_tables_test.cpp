@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "report/campaign_tables.hpp"
+#include "tribofit/report/terminal.hpp"
 
 namespace {
 
@@ -64,7 +65,9 @@ TEST(CampaignTables, RepeatsNameTheParametersOfEachLaw) {
   EXPECT_EQ(cell_of(table, table.rows[5], "unit"), "mm/s");
   TerminalOptions narrow;
   narrow.width = 80;
-  const std::string text = pooled_table({{group}, {}, {}}, narrow);
+  Report report;
+  report.add({pooled_section({{group}, {}, {}})});
+  const std::string text = render_terminal(report, narrow);
   EXPECT_THAT(text, HasSubstr("[-0.02638, -0.01622]"));
   EXPECT_THAT(text, HasSubstr("dof"));
 }

@@ -27,7 +27,7 @@ std::string page(const DiagnosedTraces& result, std::size_t width = 100, bool un
   options.arguments = {"--radius", "15mm"};
   options.width = width;
   options.unicode = unicode;
-  return render_diagnosis(result, options);
+  return render_terminal(report_of(result, options), options);
 }
 
 /// The page with every line break and indentation a single blank, for sentences that are broken somewhere.
@@ -298,7 +298,7 @@ TEST(DiagnosisPage, BarsAreAsLongAsTheirValues) {
 TEST(DiagnosisPage, OwnOptionsOfTheDiagnosisDoNotReachIdentify) {
   TerminalOptions options;
   options.arguments = {"--confirm", "r4.csv", "--radius", "15mm", "--effect", "drift", "--formula", "h = a*v; a=1"};
-  EXPECT_THAT(render_diagnosis(made_up_diagnosis(), options),
+  EXPECT_THAT(render_terminal(report_of(made_up_diagnosis(), options), options),
               HasSubstr("\n  identify --radius 15mm --effect runout runs/r15.csv\n"));
 }
 

@@ -64,13 +64,13 @@ TEST(Effects, ListFitsEightyColumnsAndNamesEveryParameter) {
   options.width = 80;
   std::vector<EffectInfo> effects;
   for (const Effect& effect : effect_catalogue()) effects.push_back(describe(effect));
-  const std::string list = render_effects(effects, options);
+  const std::string list = render_terminal(effects_report(effects), options);
   std::istringstream text(list);
   for (std::string line; std::getline(text, line);) EXPECT_LE(line.size(), 80u) << line;
   for (const EffectInfo& effect : effects) {
     EXPECT_NE(list.find("  " + effect.key + "\n"), std::string::npos);
     for (const Parameter& p : effect.parameters) EXPECT_NE(list.find(p.name + " "), std::string::npos) << p.name;
-    std::istringstream page(render_effect(effect, options));
+    std::istringstream page(render_terminal(effect_report(effect), options));
     for (std::string line; std::getline(page, line);) EXPECT_LE(line.size(), 80u) << line;
   }
 }

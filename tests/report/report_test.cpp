@@ -55,7 +55,7 @@ TEST(ReportOfATrace, HoldsCommandParametersAndBothProtocols) {
       tables.begin(), tables.end(), [](const ReportTable& table) { return table.columns.front().name == "parameter"; });
   ASSERT_NE(parameters, tables.end());
   EXPECT_THAT(parameters->rows[0],
-              ElementsAre("mu_s", "0.5090", "0.0012", "(0.24 %)", ::testing::_, "1", ::testing::_, ::testing::_));
+              ElementsAre("mu_s", "0.5090", "0.0012", "(0.24 %)", ::testing::_, "1", ::testing::_));
   const auto protocols = std::find_if(tables.begin(), tables.end(),
                                       [](const ReportTable& table) { return table.columns[0].name == "law"; });
   ASSERT_NE(protocols, tables.end());

@@ -202,7 +202,7 @@ TEST(StudyReport, ASingleLargeCellOfALargeMapIsDrawn) {
   std::vector<std::vector<MapCell>> rows(500, std::vector<MapCell>(700, cell));
   const auto k = static_cast<std::size_t>(&measure_named("peak-to-peak") - measures().data());
   rows[311][423].values[k] = 7e-3;
-  const Report report = report_of(studied(machine), request, rows);
+  const Report report = report_of(studied(machine), request, rows, measure_named("peak-to-peak"));
   expect_sound(report);
   const Chart& chart = chart_of(report, "map-peak-to-peak");
   ASSERT_TRUE(chart.map);

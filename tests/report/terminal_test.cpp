@@ -24,7 +24,7 @@ TerminalOptions with_radius() {
 }
 
 std::string rendered(const Identification& result) {
-  return render_terminal(result, with_radius());
+  return render_terminal(report_of(result, with_radius()));
 }
 
 TEST(Commands, AnOptionStaysWithItsValueWhereACommandIsFolded) {
@@ -72,7 +72,7 @@ TEST(Terminal, TheSystematicPartStandsApart) {
   result.fits[0].parameters[0].systematic = 0.0051;
   TerminalOptions options = with_radius();
   options.instruments_declared = true;
-  EXPECT_THAT(render_terminal(result, options),
+  EXPECT_THAT(render_terminal(report_of(result, options), options),
               AllOf(HasSubstr("systematic"), HasSubstr("0.0051"), Not(HasSubstr("no instrument uncertainties"))));
 }
 
@@ -82,7 +82,7 @@ TEST(Terminal, ParametersFitANarrowTerminal) {
   for (const std::size_t width : {60u, 80u}) {
     TerminalOptions options = with_radius();
     options.width = width;
-    const std::string text = render_terminal(result, options);
+    const std::string text = render_terminal(report_of(result, options), options);
     const std::string_view begin = "\n  parameter ";
     for (std::size_t at = text.find(begin); at != std::string::npos; at = text.find(begin, at + 1)) {
       for (std::size_t row = at + 1; text[row] == ' '; row = text.find('\n', row) + 1) {
@@ -96,7 +96,7 @@ TEST(Terminal, ParametersFitANarrowTerminal) {
 TEST(Terminal, WhatIsNotDeclaredIsNoZero) {
   TerminalOptions options = with_radius();
   options.instruments_declared = true;
-  EXPECT_THAT(render_terminal(made_up_result(), options), ContainsRegex("mu_s .*\\]  +-  "));
+  EXPECT_THAT(render_terminal(report_of(made_up_result(), options), options), ContainsRegex("mu_s .*\\]  1 +-  "));
 }
 
 TEST(Terminal, FlagsStandInTheRowTheyAreAbout) {
@@ -149,7 +149,7 @@ TEST(Terminal, EndsWithTheNextCommandInTheUsersOwnWords) {
   TerminalOptions options = with_radius();
   options.arguments = {"--profile", "--radius", "15mm", "--protocol", "joint"};
   EXPECT_THAT(
-      render_terminal(result, options),
+      render_terminal(report_of(result, options), options),
       AllOf(HasSubstr("\n  identify diagnose --radius 15mm runs/r15.csv\n"),
             HasSubstr("\n  identify --profile --radius 15mm --protocol joint --report r15.html runs/r15.csv\n")));
   result.path = "my runs/r 15.csv";
@@ -175,7 +175,7 @@ TEST(Terminal, ForcesAreInNewtons) {
 TEST(Terminal, ColourChangesNothingButColour) {
   TerminalOptions options = with_radius();
   options.colour = true;
-  std::string coloured = render_terminal(made_up_result(), options);
+  std::string coloured = render_terminal(report_of(made_up_result(), options), options);
   EXPECT_THAT(coloured, HasSubstr("\033["));
   for (std::size_t at; (at = coloured.find("\033[")) != std::string::npos;) {
     coloured.erase(at, coloured.find('m', at) - at + 1);
@@ -194,10 +194,10 @@ TEST(Terminal, ShellQuotingSurvivesAnything) {
 TEST(Catalogue, EveryEffectIsListedAndExplained) {
   std::vector<EffectInfo> effects;
   for (const Effect& effect : effect_catalogue()) effects.push_back(describe(effect));
-  const std::string list = render_effects(effects);
+  const std::string list = render_terminal(effects_report(effects));
   for (const EffectInfo& effect : effects) {
     EXPECT_THAT(list, HasSubstr("  " + effect.key));
-    const std::string page = render_effect(effect);
+    const std::string page = render_terminal(effect_report(effect));
     for (const Parameter& p : effect.parameters) EXPECT_THAT(page, AllOf(HasSubstr(p.name), HasSubstr(p.unit)));
   }
 }

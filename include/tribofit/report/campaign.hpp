@@ -10,7 +10,6 @@
 #include "tribofit/report/json.hpp"
 #include "tribofit/report/pooled.hpp"
 #include "tribofit/report/report.hpp"
-#include "tribofit/report/terminal.hpp"
 
 namespace tribofit {
 
@@ -20,11 +19,10 @@ namespace tribofit {
 /// `result` is null where the run could not be read; its "fits" are empty then.
 std::string run_json(const RunRecord& run, const Identification* result, const JsonOptions& options = {});
 
-/// What `identify runs/` and `identify merge` write and say of a campaign.
+/// What became of the runs of a campaign.
 struct CampaignSummary {
   std::size_t fitted = 0, failed = 0, missing = 0;  ///< runs
   std::vector<std::string> errors;                  ///< a line for each run that is failed or missing
-  std::string table;                                ///< a row a run for people, the first ones where there are many
 };
 
 /// Writes summary.csv and summary.json into the folder of the results, each whole or not at all: a row and an object a
@@ -33,12 +31,12 @@ struct CampaignSummary {
 /// summary.json is {"tool", "runs": [...], "problems": [...]}, a line a run.
 /// `comparison`, the object of comparison_json(), is added under that key where it is given.
 /// Throws WriteError. Cost: linear in runs; memory hardly grows with them.
-CampaignSummary write_summary(const ResultReader& results, const TerminalOptions& options = {},
-                              const std::string& comparison = {});
+CampaignSummary write_summary(const ResultReader& results, const std::string& comparison = {});
 
 /// A campaign: what Fig 5 to 12 of [D] show, earlier values beside ours (`comparison`), which law predicts better, all
 /// pooled values with what differs from run to run, trends, the runs with their status and warnings. Of many conditions
-/// runs of six are drawn, all are listed up to a thousand rows. runs: those of `results`, in their order.
+/// runs of six are drawn, all are listed up to a thousand rows; a terminal shows the first forty rows, and repeats as
+/// mean and interval. runs: those of `results`, in their order.
 Report report_of(const ResultReader& results, std::span<const RunResult> runs, const Pooled& pooled,
                  const std::optional<ComparisonReport>& comparison, const ReportOptions& options = {});
 

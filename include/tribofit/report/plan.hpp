@@ -4,24 +4,20 @@
 
 #include "tribofit/report/json.hpp"
 #include "tribofit/report/report.hpp"
-#include "tribofit/report/terminal.hpp"
 #include "tribofit/study/plan.hpp"
 
 namespace tribofit {
-
-/// What a person reads of a plan: what is open and how likely each answer is so far; the experiments with their
-/// minutes and the probability that each names the effect; what each model predicts to be seen in the first of them;
-/// where nothing settles it, that; and the first command to type afterwards.
-std::string render_plan(const DiagnosedTraces& diagnosed, const RunPlan& plan, const TerminalOptions& options = {});
 
 /// As of the diagnosis, with "plan": {"question", "models", "own", "experiments", "usual_means", "hopeless",
 /// "not_asked", "reason", "next"}; every number in the unit its name says.
 std::string plan_json(const DiagnosedTraces& diagnosed, const RunPlan& plan, const JsonOptions& options = {});
 
-/// The section of a report that shows the plan, with the command to type afterwards.
+/// What a person reads of a plan: what is open and how likely each answer is so far; the experiments with their
+/// minutes and the probability that each names the effect; what each model predicts to be seen in them; where nothing
+/// settles it, that; and the command to type afterwards.
 ReportSection plan_section(const DiagnosedTraces& diagnosed, const RunPlan& plan, const ReportOptions& options = {});
 
-/// The report of the diagnosis, the plan before it, with a chart of what each model predicts for the first experiment.
+/// The plan; on a page the report of the diagnosis behind it, too.
 Report plan_report(const DiagnosedTraces& diagnosed, const RunPlan& plan, const ReportOptions& options = {});
 
 }  // namespace tribofit

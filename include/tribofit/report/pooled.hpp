@@ -4,7 +4,6 @@
 #include <string>
 
 #include "tribofit/campaign/pooled.hpp"
-#include "tribofit/report/terminal.hpp"
 
 namespace tribofit {
 
@@ -16,17 +15,10 @@ namespace tribofit {
 /// Units stand in a column "unit", those of conditions in the names of their columns. Throws WriteError.
 void write_pooled(const std::string& folder, std::span<const RunResult> runs, const Pooled& pooled);
 
-/// The same for people: repeats as mean and interval, what is shared, significant trends, what goes together.
-std::string pooled_table(const Pooled& pooled, const TerminalOptions& options = {});
-
 /// comparison.csv: a row for each pair of an earlier value and one of ours, with their conditions and units.
 std::string comparison_csv(const ComparisonReport& report, std::span<const PooledGroup> groups);
 
 /// The same as the JSON object {"path", "values", "unmatched", "relative_error", "law_preference"}, for summary.json.
 std::string comparison_json(const ComparisonReport& report, std::span<const PooledGroup> groups);
-
-/// The same for people: a line for each value with both protocols, then which law is better and the relative errors.
-std::string render_comparison(const ComparisonReport& report, std::span<const PooledGroup> groups,
-                              const TerminalOptions& options = {});
 
 }  // namespace tribofit

@@ -16,13 +16,35 @@ struct Identification;
 struct RigIdentification;
 struct TwinIdentification;
 
-/// A report as data: title, what it says first, sections of texts, tables and charts. report_page() makes one HTML file
-/// of it, write_pictures() a file of each chart. report_of() makes it of a result.
+/// A report as data: title, what it says first, sections of texts, tables and charts. report_of() makes it of a result,
+/// once; render_terminal() prints it, report_page() makes one HTML file of it, write_pictures() a file of each chart.
+
+/// Where a part of a report is shown. Charts and animations are for pages, whatever is said of them.
+enum class Medium { any, page, terminal };
 
 struct ReportText {
-  enum class Kind { plain, soft, warning, command, heading, item };
+  enum class Kind {
+    plain,
+    soft,
+    warning,
+    command,
+    heading,
+    item,
+    title,  ///< the first line of a terminal, as those below
+    name,   ///< of what is said in details below it
+    detail,
+    drawing  ///< of characters
+  };
   std::string text = {};
   Kind kind = Kind::plain;
+};
+
+/// Names and values, as people read them: {"radius", "15 mm (command line)"}.
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
+struct ReportFacts {
+  Facts facts = {};
+  std::size_t name_width = 18;  ///< columns of a terminal
 };
 
 /// A column of a table: what stands above it and how it is set.
@@ -33,18 +55,30 @@ struct ReportColumn {
   std::string brief = {};  ///< the name where there is little room; empty: the same
 };
 
-/// A table, described once for the terminal and the page. Columns are named from left to right:
-/// ReportTable("Cells").text({"regime"}).numbers({"cells"}).
+/// A table, described once for the terminal, which shows the first rows of a long one, and the page. Columns are named
+/// from left to right: ReportTable("Cells").text({"regime"}).numbers({"cells"}).
 struct ReportTable {
   /// all_rows: the file that has them, where only the first are shown.
   explicit ReportTable(std::string title = {}, std::string all_rows = {})
       : caption(std::move(title)), file(std::move(all_rows)) {}
   ReportTable& text(std::initializer_list<std::string> names, int detail = 0) { return add(names, false, detail); }
   ReportTable& numbers(std::initializer_list<std::string> names, int detail = 0) { return add(names, true, detail); }
+  /// A column behind those that are there, a cell a row; none where all cells are empty.
+  void add(ReportColumn column, std::vector<std::string> cells);
+
+  /// What a terminal draws into an empty column: a bar a row, lighter up to `pale`.
+  struct Bars {
+    std::size_t column = 0;
+    std::vector<double> values = {};
+    double full = 0, pale = 0;
+    std::size_t longest = 40, shortest = 10;     ///< columns of a terminal
+    std::string pale_name = {}, full_name = {};  ///< what the lighter part stands for, and the other
+  };
 
   std::string caption, file;
   std::vector<ReportColumn> columns = {};
   std::vector<std::vector<std::string>> rows = {};
+  Bars bars = {};
   bool folded = false;  ///< opened by a click; a terminal leaves it out
 
  private:
@@ -66,39 +100,57 @@ struct Animation {
   std::vector<Block> blocks = {};
 };
 
-using ReportItem = std::variant<ReportText, ReportTable, Chart, Animation>;
+using AnyItem = std::variant<ReportText, ReportFacts, ReportTable, Chart, Animation>;
+struct ReportItem : AnyItem {
+  using AnyItem::AnyItem;
+  Medium medium = Medium::any;
+};
 
 struct ReportSection {
   std::string id = {}, title = {};
   std::vector<ReportItem> items = {};
+  Medium medium = Medium::any;
 
-  /// Adds an item; tables without rows, lines without points and charts that show nothing are left out.
-  void add(ReportItem item);
+  /// Adds an item; empty texts, facts and tables, lines without points and charts that show nothing are left out.
+  void add(ReportItem item, Medium where = Medium::any);
   void add(std::vector<Chart> charts);
-  void plain(std::string text) { add(ReportText{std::move(text), ReportText::Kind::plain}); }
-  void soft(std::string text) { add(ReportText{std::move(text), ReportText::Kind::soft}); }
-  void warning(std::string text) { add(ReportText{std::move(text), ReportText::Kind::warning}); }
-  void command(std::string text) { add(ReportText{std::move(text), ReportText::Kind::command}); }
-  void heading(std::string text) { add(ReportText{std::move(text), ReportText::Kind::heading}); }
-  void item(std::string text) { add(ReportText{std::move(text), ReportText::Kind::item}); }
+  void text(ReportText::Kind kind, std::string text, Medium where = Medium::any) {
+    add(ReportText{std::move(text), kind}, where);
+  }
+  void plain(std::string words, Medium where = Medium::any) { text(ReportText::Kind::plain, std::move(words), where); }
+  void soft(std::string words) { text(ReportText::Kind::soft, std::move(words)); }
+  void warning(std::string words) { text(ReportText::Kind::warning, std::move(words)); }
+  void command(std::string words, Medium where = Medium::any) {
+    text(ReportText::Kind::command, std::move(words), where);
+  }
+  void heading(std::string words, Medium where = Medium::any) {
+    text(ReportText::Kind::heading, std::move(words), where);
+  }
+  void item(std::string words) { text(ReportText::Kind::item, std::move(words)); }
 };
 
-/// Names and values, as people read them: {"radius", "15 mm (command line)"}.
-using Facts = std::vector<std::pair<std::string, std::string>>;
+/// A command that exists, with the user's own options, and what it is for.
+struct Suggestion {
+  std::string reason;  ///< "to ..."
+  std::string command;
+};
 
 struct Report {
   std::string kind = {};  ///< "friction law", "diagnosis", "campaign", "study"
   std::string title = {}, subtitle = {};
   std::string lead = {};  ///< the verdict: what a reader must know
   std::vector<std::string> warnings = {};
-  Facts facts = {};
+  Facts facts = {};  ///< at the head of a page
   std::vector<ReportSection> sections = {};
+  std::vector<Suggestion> next = {};  ///< at the end of a text: what to do next, then ways to look at the same result
 
   /// Adds those that hold anything.
   void add(std::vector<ReportSection> more);
+  /// Drops what is shown elsewhere only.
+  void keep_for(Medium medium);
 };
 
-/// What commands in a report and below a text are made of.
+/// What a report is made with, and its commands of.
 struct ReportOptions {
   std::vector<std::string> arguments = {};  ///< the user's own options without traces and outputs
   std::vector<std::string> inputs = {};     ///< traces and folders as the user named them; empty: the path of the trace
@@ -107,6 +159,8 @@ struct ReportOptions {
   bool report_written = false;              ///< and its page
   bool leave_out_cycles = false;            ///< the section cycles_section() of a trace is shown from elsewhere
   int threads = 1;                          ///< that draw a trace side by side; 0: as many as there are
+  bool charts = true;                       ///< and animations, which cost more than all else
+  std::vector<std::string> shared_arguments = {};  ///< of a study: the options that those of other kinds have, too
 };
 
 /// A trace: three cycles of friction and velocity beside the laws, friction over v_r with both branches, parameters,

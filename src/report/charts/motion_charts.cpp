@@ -8,6 +8,8 @@
 namespace tribofit {
 namespace {
 
+constexpr std::size_t kBins = 400;  // in which the extremes of a motion are drawn
+
 std::vector<double> picked(std::span<const double> values, std::span<const std::size_t> samples, double unit) {
   std::vector<double> out;
   out.reserve(samples.size());
@@ -26,20 +28,20 @@ Chart portrait_plane(std::string id, std::string title, double disc_velocity) {
           .height = 420};
 }
 
-void add_loop(const DrawnMotion& m, std::size_t bins, const Stroke& stroke, Chart& chart, bool closed) {
-  std::vector<std::size_t> kept = drawn_samples({m.displacement, m.velocity}, m.sticks, bins);
+void add_loop(const DrawnMotion& m, const Stroke& stroke, Chart& chart, bool closed) {
+  std::vector<std::size_t> kept = drawn_samples({m.displacement, m.velocity}, m.sticks, kBins);
   if (closed) kept.push_back(kept.front());
   chart.lines.push_back(
       {m.name, picked(m.displacement, kept, kMillimetre), picked(m.velocity, kept, kMillimetre), stroke});
 }
 
-void add_over_time(const DrawnMotion& m, const std::vector<MotionChannel>& channels, std::size_t bins,
-                   const Stroke& stroke, Chart& chart) {
+void add_over_time(const DrawnMotion& m, const std::vector<MotionChannel>& channels, const Stroke& stroke,
+                   Chart& chart) {
   if (chart.lines.empty()) {
     chart.panels.clear();
     for (const MotionChannel& channel : channels) chart.panels.push_back({channel.axis});
   }
-  const std::vector<std::size_t> kept = drawn_samples({m.displacement, m.velocity, m.friction}, m.sticks, bins);
+  const std::vector<std::size_t> kept = drawn_samples({m.displacement, m.velocity, m.friction}, m.sticks, kBins);
   const std::vector<double> time = picked(m.time, kept, 1);
   for (std::size_t panel = 0; panel < channels.size(); ++panel) {
     const MotionChannel& channel = channels[panel];
@@ -61,7 +63,6 @@ ChartMark disc_mark(double disc_velocity, std::size_t panel) {
 }
 
 Animation::Block animated(const DrawnMotion& m) {
-  constexpr std::size_t kBins = 250;
   const std::vector<std::size_t> kept = drawn_samples({m.displacement, m.friction}, m.sticks, kBins);
   Animation::Block block{
       m.name, picked(m.time, kept, 1), picked(m.displacement, kept, kMillimetre), picked(m.friction, kept, 1), {}};

@@ -31,9 +31,9 @@ struct DrawnMotion {
 
 /// Velocity over displacement, without a line yet; the speed of the disc [m/s] is marked.
 Chart portrait_plane(std::string id, std::string title, double disc_velocity);
-/// Adds a motion to it, of about `bins` extremes of each channel, three quarters of which lie in the slips, where
+/// Adds a motion to it, of a few hundred extremes of each channel, three quarters of which lie in the slips, where
 /// things happen fast; closed: it ends where it began.
-void add_loop(const DrawnMotion& motion, std::size_t bins, const Stroke& stroke, Chart& chart, bool closed = false);
+void add_loop(const DrawnMotion& motion, const Stroke& stroke, Chart& chart, bool closed = false);
 
 /// A channel over time in a panel of its own.
 struct MotionChannel {
@@ -42,8 +42,8 @@ struct MotionChannel {
   double unit;
 };
 /// Adds a motion with the same extremes to a chart over time, a line a channel; the legend names it once.
-void add_over_time(const DrawnMotion& motion, const std::vector<MotionChannel>& channels, std::size_t bins,
-                   const Stroke& stroke, Chart& chart);
+void add_over_time(const DrawnMotion& motion, const std::vector<MotionChannel>& channels, const Stroke& stroke,
+                   Chart& chart);
 void shade_sticks(const DrawnMotion& motion, Chart& chart);
 ChartMark disc_mark(double disc_velocity, std::size_t panel = 0);
 

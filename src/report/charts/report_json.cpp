@@ -123,8 +123,16 @@ void add_annotations(const Chart& chart, Json& json) {
             list_of(chart.labels, label));
 }
 
+Json facts_json(const Facts& facts) {
+  return list_of(facts, [](const auto& f) { return Json::array({f.first, f.second}); });
+}
+
 Json item_json(const ReportText& text) {
   return object("type", "text", "kind", style_of(text.kind, kTexts), "text", text.text);
+}
+
+Json item_json(const ReportFacts& facts) {
+  return object("type", "facts", "pairs", facts_json(facts.facts));
 }
 
 Json item_json(const ReportTable& table) {
@@ -171,19 +179,24 @@ Json item_json(const ReportItem& item) {
 }
 
 Json section_json(const ReportSection& section) {
-  const auto item = [](const ReportItem& i) { return item_json(i); };
-  return object("id", section.id, "title", section.title, "items", list_of(section.items, item));
+  Json items = Json::array();
+  for (const ReportItem& item : section.items) {
+    if (item.medium != Medium::terminal) items.push_back(item_json(item));
+  }
+  return object("id", section.id, "title", section.title, "items", std::move(items));
 }
 
 Json report_json_without_sections(const Report& report) {
-  const auto fact = [](const auto& f) { return Json::array({f.first, f.second}); };
   return object("kind", report.kind, "title", report.title, "subtitle", report.subtitle, "lead", report.lead,
-                "warnings", report.warnings, "facts", list_of(report.facts, fact), "styles", styles_json());
+                "warnings", report.warnings, "facts", facts_json(report.facts), "styles", styles_json());
 }
 
 Json report_json(const Report& report) {
   Json json = report_json_without_sections(report);
-  json["sections"] = list_of(report.sections, section_json);
+  Json& sections = json["sections"] = Json::array();
+  for (const ReportSection& section : report.sections) {
+    if (section.medium != Medium::terminal) sections.push_back(section_json(section));
+  }
   return json;
 }
 

@@ -98,10 +98,9 @@ ReportTable extremes_table(const MapRequest& request, const MapRows& rows) {
   return table;
 }
 
-}  // namespace
-
-std::string render_map(const StudiedMachine& studied, const MapRequest& request, const MapRows& rows,
-                       const MeasureInfo& measure, const TerminalOptions& options) {
+/// A measure as rows of values, thinned to what a terminal shows.
+ReportTable values_table(const MapRequest& request, const MapRows& rows, const MeasureInfo& measure) {
+  constexpr std::size_t kColumns = 8, kRows = 12;
   const auto& all = measures();
   const auto k = static_cast<std::size_t>(
       std::find_if(all.begin(), all.end(), [&](const MeasureInfo& m) { return m.name == measure.name; }) - all.begin());
@@ -109,9 +108,9 @@ std::string render_map(const StudiedMachine& studied, const MapRequest& request,
   ReportTable table(fmt::format("{} over {} (across) and {} (down)", with_unit(measure.name, measure.unit),
                                 with_unit(x.name, x.unit), with_unit(y.name, y.unit)));
   table.text({""});
-  const std::vector<std::size_t> columns = thinned(request.x.values.size(), 8);
+  const std::vector<std::size_t> columns = thinned(request.x.values.size(), kColumns);
   for (const std::size_t i : columns) table.numbers({significant(request.x.values[i] / x.si, 3)});
-  for (const std::size_t j : thinned(rows.size(), 12)) {
+  for (const std::size_t j : thinned(rows.size(), kRows)) {
     std::vector<std::string>& row = table.rows.emplace_back();
     row.push_back(significant(request.y.values[j] / y.si, 3));
     for (const std::size_t i : columns) {
@@ -119,13 +118,10 @@ std::string render_map(const StudiedMachine& studied, const MapRequest& request,
       row.push_back(cell.regime == Regime::sliding ? "slides" : significant(cell.values[k] / measure.si, 3));
     }
   }
-  TerminalText text = machine_text(studied, options);
-  text.table(table);
-  const std::size_t unsettled = count_of(rows, Regime::not_settled);
-  text.line(fmt::format("{} cells", request.x.values.size() * rows.size()) +
-            (unsettled > 0 ? fmt::format(", {} of which did not settle (their regime says so)", unsettled) : ""));
-  return ended(std::move(text), "to see the speeds at which stick vanishes", "speed", options);
+  return table;
 }
+
+}  // namespace
 
 std::string map_json(const StudiedMachine& studied, const MapRequest& request, const MapRows& rows,
                      const JsonOptions& options) {
@@ -148,17 +144,22 @@ std::string map_json(const StudiedMachine& studied, const MapRequest& request, c
 }
 
 Report report_of(const StudiedMachine& studied, const MapRequest& request, const MapRows& rows,
-                 const ReportOptions& options) {
+                 const MeasureInfo& measure, const ReportOptions& options) {
   const std::size_t nx = request.x.values.size(), ny = request.y.values.size();
   std::string lead = headline(request, rows);
   if (nx > kMostCells || ny > kMostCells) {
     lead += " Where a colour stands for several cells, it is that of the largest value among them; --csv writes all.";
   }
   ReportSection section{"maps", "Maps", {}};
-  for (std::size_t k = 0; k < measures().size(); ++k) section.add(map_chart(studied, request, rows, k));
+  for (std::size_t k = 0; k < measures().size(); ++k) {
+    section.add(map_chart(studied, request, rows, k));
+  }
+  section.add(values_table(request, rows, measure), Medium::terminal);
+  section.plain(headline(request, rows), Medium::terminal);
   section.add(extremes_table(request, rows));
   section.add(regimes_table(rows));
-  return study_report(studied, "map", "Map of the motion", std::move(lead), {std::move(section)}, options);
+  return study_report(studied, "map", "Map of the motion", std::move(lead), {std::move(section)},
+                      {"to see the speeds at which stick vanishes", "speed"}, options);
 }
 
 }  // namespace tribofit

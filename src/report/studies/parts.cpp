@@ -18,16 +18,6 @@ std::string other_machine_warning(std::string_view subject, const Fit& fit, doub
 
 namespace {
 
-/// "m = 0.85 kg, k = 16.2 N/mm, ...".
-std::string rig_sentence(const Machine& m) {
-  return fmt::format(
-      "m = {} kg, k = {} N/mm, c = {} N s/mm (damping ratio {}), natural frequency {} Hz; N = {} N, r = {} mm, {} rpm, "
-      "omega r = {} mm/s",
-      significant(m.rig.mass, 4), significant(1e-3 * m.rig.stiffness, 4), significant(1e-3 * m.rig.damping, 4),
-      significant(m.rig.damping_ratio(), 3), significant(m.natural_hertz(), 4), brief(m.load),
-      brief(m.radius / kMillimetre), brief(m.speed / kRpm), significant(m.disc_velocity() / kMillimetre, 4));
-}
-
 /// "mu_s = 0.5090, mu_k = 0.3180, alpha = 0.05214 s/mm".
 std::string friction_sentence(const Machine& m) {
   std::vector<std::string> parameters;
@@ -45,21 +35,24 @@ std::string sharpness_text(const StudiedMachine& studied) {
 }
 
 ReportTable machine_table(const StudiedMachine& studied) {
-  ReportTable table("Numbers of the machine");
-  table.text({"number"}).numbers({"value", "std error"}).text({"unit", "meaning"});
+  const double unknown = std::nan("");
+  std::vector<ShownValue> values;
+  std::vector<std::string> meanings;
   for (const Variable& v : variables_of(studied.machine)) {
-    const double value = value_of(studied.machine, v.name) / v.si, error = std_error_of(studied, v.name) / v.si;
-    const bool known = std::isfinite(error);
-    table.rows.push_back({v.name, known ? fixed(value, places_for(error)) : significant(value, 5),
-                          known ? fixed(error, places_for(error)) : "-", v.unit == "1" ? "" : v.unit, v.meaning});
+    values.push_back({v.name, value_of(studied.machine, v.name) / v.si, std_error_of(studied, v.name) / v.si, unknown,
+                      unknown, v.unit == "1" ? "" : v.unit});
+    meanings.push_back(v.meaning);
   }
+  ReportTable table = value_table("number", values);
+  table.caption = "Numbers of the machine";
+  table.add({"meaning"}, std::move(meanings));
   return table;
 }
 
 /// The numbers of rig and drive, then the law.
 Facts facts_of(const StudiedMachine& studied, const std::string& kind, const ReportOptions& options) {
   Facts facts = {{"machine", studied.source}};
-  for (const char* name : {"mass", "stiffness", "damping-ratio", "load", "radius", "speed", "velocity"}) {
+  for (const char* name : {"mass", "stiffness", "damping", "damping-ratio", "load", "radius", "speed", "velocity"}) {
     const Variable v = variable_named(studied.machine, name);
     facts.emplace_back(name == std::string("velocity") ? "omega r" : v.name,
                        significant(value_of(studied.machine, v.name) / v.si, 4) + unit_behind(v.unit));
@@ -93,38 +86,30 @@ Json machine_json(const StudiedMachine& studied) {
 
 }  // namespace
 
-TerminalText machine_text(const StudiedMachine& studied, const TerminalOptions& options) {
-  TerminalText text(options);
-  for (const std::string& warning : studied.warnings) text.warning(warning);
-  text.raw(fmt::format("{}: {}\n", studied.source, studied.machine.model.name()));
-  text.lines({rig_sentence(studied.machine), friction_sentence(studied.machine)});
-  if (studied.sharpness > 0) text.line(sharpness_text(studied));
-  text.lines(studied.notes);
-  return text;
-}
-
-std::string ended(TerminalText text, const std::string& purpose, const std::string& kind,
-                  const TerminalOptions& options, const std::vector<std::string>& more) {
-  const std::vector<std::string> words = words_of(joined({"study", kind}, more), options.arguments);
-  text.next({purpose, command_line(words, options.inputs)});
-  return text.take();
-}
-
 Report study_report(const StudiedMachine& studied, const std::string& kind, const std::string& title, std::string lead,
-                    std::vector<ReportSection> sections, const ReportOptions& options) {
+                    std::vector<ReportSection> sections, const NextStudy& next, const ReportOptions& options) {
   Report report = titled_report("study", title, "Study", std::move(lead));
   report.warnings = studied.warnings;
   report.facts = facts_of(studied, kind, options);
+  report.next = {
+      {next.purpose,
+       command_line(words_of(joined({"study", next.kind}, next.more), options.shared_arguments), options.inputs)}};
+  ReportSection begin{"record", "", {}, Medium::terminal};
+  for (const std::string& warning : studied.warnings) begin.warning(warning);
+  begin.text(ReportText::Kind::title, fmt::format("{}: {}", studied.source, studied.machine.model.name()));
+  begin.add(ReportFacts{report.facts});
+  for (const std::string& note : studied.notes) begin.plain(note);
+  report.add({std::move(begin)});
   report.add(std::move(sections));
-  ReportSection machine{"machine", "The machine", {machine_table(studied)}};
+  ReportSection machine{"machine", "The machine", {machine_table(studied)}, Medium::page};
   for (const std::string& note : studied.notes) machine.soft("Note: " + note);
   std::vector<std::string> inputs = options.inputs;
   if (inputs.empty() && studied.record) inputs = {studied.record->path};
   const std::string checksum =
       studied.record ? fmt::format(" Checksum of the rows of the record (XXH64): {:016x}.", studied.record->checksum)
                      : "";
-  report.add(
-      {std::move(machine), run_section(command_line(words_of({"study", kind}, options.arguments), inputs), checksum)});
+  report.add({std::move(machine),
+              run_section(report, command_line(words_of({"study", kind}, options.arguments), inputs), {}, checksum)});
   return report;
 }
 

@@ -16,17 +16,16 @@ namespace tribofit {
 /// What all studies have in common; each of them is one file beside this one, with all that is said, drawn and written
 /// of it.
 
-/// How the text of every study begins: warnings, and the numbers of the machine.
-TerminalText machine_text(const StudiedMachine& studied, const TerminalOptions& options);
+/// A study of another kind as the next command. `more`: options behind the kind.
+struct NextStudy {
+  std::string purpose, kind;
+  std::vector<std::string> more = {};
+};
 
-/// How it ends: the study of another kind as the next command. `more`: options behind the kind.
-std::string ended(TerminalText text, const std::string& purpose, const std::string& kind,
-                  const TerminalOptions& options, const std::vector<std::string>& more = {});
-
-/// The page of a study: facts and warnings of the machine, the sections of the study, every number of the machine with
-/// its standard error, and how to run the study again. kind: "speed", "phase", ...; lead: what a reader must know.
+/// The report of a study: warnings, facts and numbers of the machine with their standard errors, the sections of the
+/// study, how to run it again, what to do next. kind: "speed", "phase", ...; lead: what a reader must know.
 Report study_report(const StudiedMachine& studied, const std::string& kind, const std::string& title, std::string lead,
-                    std::vector<ReportSection> sections, const ReportOptions& options);
+                    std::vector<ReportSection> sections, const NextStudy& next, const ReportOptions& options);
 
 /// Its JSON: {"tool", "study": {"kind", "machine", members of `body`}}.
 std::string study_text(const StudiedMachine& studied, const char* kind, const Json& body, const JsonOptions& options);

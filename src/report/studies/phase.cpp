@@ -10,7 +10,6 @@ namespace tribofit {
 namespace {
 
 constexpr std::size_t kDrawn = 8;  // portraits
-constexpr std::size_t kStartBins = 400, kCycleBins = 300;
 
 std::string speed_text(const Portrait& portrait) {
   return significant(portrait.velocity / kMillimetre, 4) + " mm/s";
@@ -20,14 +19,13 @@ Chart portrait_chart(const StudiedMachine& studied, const Portrait& portrait, st
   Chart chart = portrait_plane(
       fmt::format("phase-{}", number),
       fmt::format("Portrait at {}: {}", speed_text(portrait), to_string(portrait.settled.regime)), portrait.velocity);
-  add_loop({"from the start", portrait.start}, kStartBins, {.colour = Colour::grey, .dash = Dash::dotted, .width = 1},
-           chart);
+  add_loop({"from the start", portrait.start}, {.colour = Colour::grey, .dash = Dash::dotted, .width = 1}, chart);
   if (portrait.cycle.size() > 0) {
-    add_loop({"settled cycle", portrait.cycle}, kCycleBins, {.colour = Colour::black, .width = 2}, chart, true);
+    add_loop({"settled cycle", portrait.cycle}, {.colour = Colour::black, .width = 2}, chart, true);
   }
   const BlockMotion measured = measured_motion(studied, portrait.velocity);
   if (measured.size() > 0) {
-    add_loop({fmt::format("measured, {} cycles", measured.cycles), measured}, kCycleBins,
+    add_loop({fmt::format("measured, {} cycles", measured.cycles), measured},
              {.colour = Colour::red, .dash = Dash::dashed, .width = 1.2}, chart);
   }
   chart.height = 380;
@@ -41,7 +39,7 @@ Chart all_portraits(const std::vector<const Portrait*>& drawn) {
   for (std::size_t k = 0; k < drawn.size(); ++k) {
     const Portrait& portrait = *drawn[k];
     if (portrait.cycle.size() == 0) continue;
-    add_loop({speed_text(portrait), portrait.cycle}, kCycleBins, stroke_of(k), chart, true);
+    add_loop({speed_text(portrait), portrait.cycle}, stroke_of(k), chart, true);
   }
   return chart;
 }
@@ -57,7 +55,7 @@ Chart time_chart(const Portrait& portrait, std::size_t number) {
                 {{{.quantity = "displacement", .unit = "mm"}, &DrawnMotion::displacement, kMillimetre},
                  {{.quantity = "velocity v_{b}", .unit = "mm/s"}, &DrawnMotion::velocity, kMillimetre},
                  {{.quantity = "friction", .unit = "1"}, &DrawnMotion::friction, 1}},
-                kStartBins, stroke_of(0), chart);
+                stroke_of(0), chart);
   shade_sticks(motion, chart);
   return chart;
 }
@@ -129,18 +127,6 @@ void write_motion(WholeFolder& files, const std::string& name, const SimulatedMo
 
 }  // namespace
 
-std::string render_study(const StudiedMachine& studied, const std::vector<Portrait>& study,
-                         const TerminalOptions& options) {
-  TerminalText text = machine_text(studied, options);
-  text.table(portraits_table(study));
-  for (const Portrait& portrait : study) text.line(seen_sentence(portrait.settled), 2, 4);
-  if (!options.csv_written) {
-    text.line(
-        "--csv FOLDER writes displacement and velocity: phase_N.csv from the start, cycle_N.csv one settled cycle");
-  }
-  return ended(std::move(text), "to see the speed at which stick vanishes", "speed", options);
-}
-
 std::string study_json(const StudiedMachine& studied, const std::vector<Portrait>& study, const JsonOptions& options) {
   const auto portrait = [](const Portrait& p) {
     return object("velocity_mm_s", p.velocity / kMillimetre, "settled", explained_json(p.settled), "start",
@@ -173,7 +159,8 @@ Report report_of(const StudiedMachine& studied, const std::vector<Portrait>& stu
   ReportSection portraits{"phase", "Displacement and velocity", {}};
   ReportSection times{"time", "Over time", {}}, moving{"block", "The block in motion", {}};
   if (drawn.size() < study.size()) {
-    portraits.soft(fmt::format("{} of {} speeds are drawn; the table has all.", drawn.size(), study.size()));
+    portraits.plain(fmt::format("{} of {} speeds are drawn; the table has all.", drawn.size(), study.size()),
+                    Medium::page);
   }
   if (drawn.size() > 1) portraits.add(all_portraits(drawn));
   for (std::size_t k = 0; k < drawn.size(); ++k) {
@@ -182,12 +169,20 @@ Report report_of(const StudiedMachine& studied, const std::vector<Portrait>& stu
     if (drawn[k]->cycle.size() > 0) moving.add(animation_of(studied, *drawn[k], k + 1));
   }
   portraits.add(portraits_table(study));
-  Report report =
-      study_report(studied, "phase", "Phase portraits", regimes_sentence(study), {portraits, moving, times}, options);
+  std::vector<std::string> unsettled;
   for (const Portrait& portrait : study) {
     const std::string seen = seen_sentence(portrait.settled);
-    if (!seen.empty()) report.warnings.push_back(speed_text(portrait) + ": " + seen);
+    if (!seen.empty()) unsettled.push_back(speed_text(portrait) + ": " + seen);
   }
+  for (const std::string& sentence : unsettled) portraits.text(ReportText::Kind::item, sentence, Medium::terminal);
+  if (!options.csv_written) {
+    portraits.plain(
+        "--csv FOLDER writes displacement and velocity: phase_N.csv from the start, cycle_N.csv one settled cycle");
+  }
+  Report report = study_report(studied, "phase", "Phase portraits", regimes_sentence(study),
+                               {std::move(portraits), std::move(moving), std::move(times)},
+                               {"to see the speed at which stick vanishes", "speed"}, options);
+  report.warnings.insert(report.warnings.end(), unsettled.begin(), unsettled.end());
   return report;
 }
 

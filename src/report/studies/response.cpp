@@ -28,7 +28,6 @@ ReportTable harmonics_table(const Response& study) {
     table.rows.push_back({fmt::format("{}", n + 1), significant(h.frequency, 4), significant(h.force, 4),
                           significant(h.displacement / kMillimetre, 4), significant(h.velocity / kMillimetre, 4)});
   }
-  table.folded = table.rows.size() > 30;
   return table;
 }
 
@@ -87,20 +86,6 @@ Chart spectrum_chart(const Response& study, const char* id, const char* title, C
 
 }  // namespace
 
-std::string render_study(const StudiedMachine& studied, const Response& study, const TerminalOptions& options) {
-  constexpr std::size_t kHarmonics = 8;
-  TerminalText text = machine_text(studied, options);
-  text.heading("Response to a force");
-  text.line(fmt::format("natural frequency {} Hz, damped {} Hz; response frequency {} Hz",
-                        significant(study.natural_frequency, 5), significant(study.damped_natural_frequency, 5),
-                        significant(study.settled.frequency, 5)));
-  text.line(response_sentence(study) + " (--csv: response.csv)");
-  text.line(seen_sentence(study.settled), 2, 4);
-  if (study.harmonics.empty()) text.line(no_spectra(study));
-  text.table(harmonics_table(study), kHarmonics);
-  return ended(std::move(text), "to see portraits of the motion", "phase", options);
-}
-
 std::string study_json(const StudiedMachine& studied, const Response& study, const JsonOptions& options) {
   Json curve = Json::array();
   for (std::size_t i = 0; i < study.frequency.size(); ++i) {
@@ -128,12 +113,16 @@ void write_study(const std::string& folder, const Response& study) {
 }
 
 Report report_of(const StudiedMachine& studied, const Response& study, const ReportOptions& options) {
-  const std::string frequency = study.harmonics.empty() ? "none: " + std::string(to_string(study.settled.regime))
-                                                        : significant(study.settled.frequency, 5) + " Hz";
-  std::string lead = fmt::format("Natural frequency {} Hz, damped {} Hz; response frequency {}. {}.",
-                                 significant(study.natural_frequency, 5),
-                                 significant(study.damped_natural_frequency, 5), frequency, response_sentence(study));
-  ReportSection section{"response", "Response and spectra", {}};
+  const std::string frequencies =
+      fmt::format("natural frequency {} Hz, damped {} Hz; response frequency {}",
+                  significant(study.natural_frequency, 5), significant(study.damped_natural_frequency, 5),
+                  study.harmonics.empty() ? "none: " + std::string(to_string(study.settled.regime))
+                                          : significant(study.settled.frequency, 5) + " Hz");
+  const std::string seen = seen_sentence(study.settled);
+  ReportSection section{"response", "Response to a force", {}};
+  section.plain(frequencies, Medium::terminal);
+  section.plain(response_sentence(study) + " (--csv: response.csv)", Medium::terminal);
+  section.text(ReportText::Kind::item, seen, Medium::terminal);
   section.add(curve_chart(study));
   if (study.harmonics.empty()) {
     section.soft(no_spectra(study));
@@ -142,11 +131,11 @@ Report report_of(const StudiedMachine& studied, const Response& study, const Rep
                                {.quantity = "friction force", .unit = "N"}, &ResponseLine::force, 1));
     section.add(spectrum_chart(study, "spectrum-displacement", "Spectrum of the displacement",
                                {.quantity = "displacement", .unit = "mm"}, &ResponseLine::displacement, kMillimetre));
-    section.add(harmonics_table(study));
   }
-  Report report =
-      study_report(studied, "response", "Response to a force", std::move(lead), {std::move(section)}, options);
-  const std::string seen = seen_sentence(study.settled);
+  section.add(harmonics_table(study));
+  Report report = study_report(studied, "response", "Response to a force",
+                               capitalised(frequencies) + ". " + response_sentence(study) + ".", {std::move(section)},
+                               {"to see portraits of the motion", "phase"}, options);
   if (!seen.empty()) report.warnings.push_back(seen);
   return report;
 }

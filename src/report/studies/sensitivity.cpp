@@ -75,19 +75,6 @@ Chart bar_chart(const std::vector<Sensitivity>& study, std::size_t measure) {
 
 }  // namespace
 
-std::string render_study(const StudiedMachine& studied, const std::vector<Sensitivity>& study,
-                         const TerminalOptions& options) {
-  TerminalText text = machine_text(studied, options);
-  text.table(elasticity_table(study));
-  text.heading("What matters most");
-  for (std::size_t k = 0; k < measures().size(); ++k) {
-    text.line(measures()[k].name + ": " + ranking_sentence(study, k), 2, 4);
-  }
-  if (!options.csv_written) text.line("--csv FOLDER writes the sweeps behind these (sensitivity.csv)");
-  return ended(std::move(text), "to vary two numbers at once", "map", options,
-               {"--x", "stiffness", "--y", "mass", "--csv", "map/"});
-}
-
 std::string study_json(const StudiedMachine& studied, const std::vector<Sensitivity>& study,
                        const JsonOptions& options) {
   const auto variable = [](const Sensitivity& one) {
@@ -151,10 +138,17 @@ Report report_of(const StudiedMachine& studied, const std::vector<Sensitivity>& 
                                study[order.front()].variable.name, with_sign(study[order.front()].elasticities[k], 3)));
   }
   bars.add(elasticity_table(study));
+  bars.heading("What matters most");
+  for (std::size_t k = 0; k < measures().size(); ++k) {
+    bars.item(measures()[k].name + ": " + ranking_sentence(study, k));
+  }
+  if (!options.csv_written) bars.plain("--csv FOLDER writes the sweeps behind these (sensitivity.csv)");
   return study_report(studied, "sensitivity", "Which number matters",
                       lead.empty() ? "At this machine no measure has an elasticity."
                                    : capitalised(fmt::format("{}.", fmt::join(lead, "; "))),
-                      {std::move(bars), std::move(sweeps)}, options);
+                      {std::move(bars), std::move(sweeps)},
+                      {"to vary two numbers at once", "map", {"--x", "stiffness", "--y", "mass", "--csv", "map/"}},
+                      options);
 }
 
 }  // namespace tribofit

@@ -224,18 +224,6 @@ Chart growth_chart(const SpeedStudy& study) {
 
 }  // namespace
 
-std::string render_study(const StudiedMachine& studied, const SpeedStudy& study, const TerminalOptions& options) {
-  constexpr std::size_t kSpeeds = 20;
-  TerminalText text = machine_text(studied, options);
-  text.table(own_table(studied, study));
-  text.line(seen_sentence(study.own), 2, 4);
-  text.heading("Critical speed");
-  text.lines(critical_sentences(studied, study), 2, 4);
-  text.line(bistable_sentence(study.critical));
-  text.table(speed_table(study, kSpeeds));
-  return ended(std::move(text), "to see which number matters", "sensitivity", options);
-}
-
 std::string study_json(const StudiedMachine& studied, const SpeedStudy& study, const JsonOptions& options) {
   Json points = Json::array();
   for (std::size_t i = 0; i < study.velocity.size(); ++i) {
@@ -271,26 +259,35 @@ void write_study(const std::string& folder, const SpeedStudy& study) {
 }
 
 Report report_of(const StudiedMachine& studied, const SpeedStudy& study, const ReportOptions& options) {
+  constexpr std::size_t kRowsOfATerminal = 20, kRowsOfAPage = 200;
+  const std::string seen = seen_sentence(study.own), between = bistable_sentence(study.critical);
   std::vector<std::string> lead;
-  for (const std::string& sentence : critical_sentences(studied, study)) lead.push_back(capitalised(sentence) + ".");
-  const std::string between = bistable_sentence(study.critical);
-  if (!between.empty()) lead.push_back(between);
   ReportSection section{"speed", "Over the speed of the disc", {}};
-  Chart motion = over_speed(studied, study, "speed-motion", "Frequency, stick and amplitude over speed",
-                            {"frequency", "stick-time", "peak-to-peak"});
-  motion.note = "Where the two ways differ, both motions go on where they have begun.";
-  section.add(std::move(motion));
-  section.add(over_speed(studied, study, "speed-energy", "Energy before break-away and fastest slip over speed",
-                         {"energy", "peak-speed"}));
-  section.add(growth_chart(study));
+  {
+    Chart motion = over_speed(studied, study, "speed-motion", "Frequency, stick and amplitude over speed",
+                              {"frequency", "stick-time", "peak-to-peak"});
+    motion.note = "Where the two ways differ, both motions go on where they have begun.";
+    section.add(std::move(motion));
+    section.add(over_speed(studied, study, "speed-energy", "Energy before break-away and fastest slip over speed",
+                           {"energy", "peak-speed"}));
+    section.add(growth_chart(study));
+  }
   section.add(own_table(studied, study));
-  constexpr std::size_t kMostRows = 200;
-  ReportTable table = speed_table(study, kMostRows);
-  table.folded = true;
-  section.add(std::move(table));
+  section.text(ReportText::Kind::item, seen, Medium::terminal);
+  section.heading("Critical speed");
+  for (const std::string& sentence : critical_sentences(studied, study)) {
+    section.item(sentence);
+    lead.push_back(capitalised(sentence) + ".");
+  }
+  section.plain(between);
+  if (!between.empty()) lead.push_back(between);
+  section.add(speed_table(study, kRowsOfATerminal), Medium::terminal);
+  ReportTable all = speed_table(study, kRowsOfAPage);
+  all.folded = true;
+  section.add(std::move(all));
   Report report = study_report(studied, "speed", "Motion over speed", fmt::format("{}", fmt::join(lead, " ")),
-                               {std::move(section)}, options);
-  if (study.own.regime == Regime::not_settled) report.warnings.push_back(seen_sentence(study.own));
+                               {std::move(section)}, {"to see which number matters", "sensitivity"}, options);
+  if (!seen.empty()) report.warnings.push_back(seen);
   return report;
 }
 

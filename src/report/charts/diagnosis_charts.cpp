@@ -1,4 +1,4 @@
-#include <fmt/format.h>
+#include "report/charts/diagnosis_charts.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,15 +6,12 @@
 #include <utility>
 
 #include "diagnosis/conclusions.hpp"
-#include "diagnosis_sentences.hpp"
-#include "numbers.hpp"
 #include "report/charts/styles.hpp"
-#include "report_parts.hpp"
+#include "report/diagnosis_sentences.hpp"
+#include "report/numbers.hpp"
 
 namespace tribofit {
 namespace {
-
-constexpr std::size_t kDrawnTraces = 8;
 
 /// A chart of held-out errors beside the noise floor.
 Chart errors_chart(const DiagnosedTraces& result, const char* id, const char* title, const char* note) {
@@ -25,6 +22,14 @@ Chart errors_chart(const DiagnosedTraces& result, const char* id, const char* ti
           .panels = {{.axis = {.quantity = "held-out error", .unit = unit, .from_zero = true}}},
           .marks = {{result.diagnosis.floor_rmse, false, Dash::dashed, "noise floor"}}};
 }
+
+/// Of what was fitted, in the order of EffectStatus.
+constexpr std::array<Stroke, 5> kStatusStrokes = {
+    dots(Colour::red, Symbol::circle, 10), dots(Colour::purple, Symbol::diamond, 10),
+    dots(Colour::blue, Symbol::triangle_up, 9), dots(Colour::green, Symbol::square, 9),
+    dots(Colour::grey, Symbol::triangle_down, 9)};
+
+}  // namespace
 
 Chart ladder_chart(const DiagnosedTraces& result) {
   const Diagnosis& d = result.diagnosis;
@@ -48,7 +53,6 @@ Chart ladder_chart(const DiagnosedTraces& result) {
   return chart;
 }
 
-/// Error of the law and of the final model that goes with each variable, and the whole of it, on one scale.
 Chart where_chart(const DiagnosedTraces& result) {
   const Diagnosis& d = result.diagnosis;
   Chart chart{.id = "where",
@@ -80,14 +84,6 @@ Chart where_chart(const DiagnosedTraces& result) {
   return chart;
 }
 
-/// Of what was fitted, in the order of EffectStatus.
-constexpr std::array<Stroke, 5> kStatusStrokes = {
-    dots(Colour::red, Symbol::circle, 10), dots(Colour::purple, Symbol::diamond, 10),
-    dots(Colour::blue, Symbol::triangle_up, 9), dots(Colour::green, Symbol::square, 9),
-    dots(Colour::grey, Symbol::triangle_down, 9)};
-
-enum class Order { status, error };
-/// By their status, then by their held-out error; or by that error alone.
 std::vector<const EffectFinding*> sorted_findings(const Diagnosis& d, Order by) {
   std::vector<const EffectFinding*> order;
   for (const EffectFinding& finding : d.effects) order.push_back(&finding);
@@ -98,7 +94,6 @@ std::vector<const EffectFinding*> sorted_findings(const Diagnosis& d, Order by) 
   return order;
 }
 
-/// Held-out error with each candidate.
 Chart candidates_chart(const DiagnosedTraces& result) {
   const Diagnosis& d = result.diagnosis;
   Chart chart = errors_chart(result, "candidates", "Each candidate: held-out error with it",
@@ -119,87 +114,6 @@ Chart candidates_chart(const DiagnosedTraces& result) {
   if (!d.ladder.empty()) chart.marks.push_back({d.ladder.front().held_out_rmse, false, Dash::dotted, law_text(d)});
   chart.height = 420;
   return chart;
-}
-
-ReportTable effects_table(const Diagnosis& d, const Motion& motion) {
-  ReportTable table("What became of each effect");
-  table.text({"effect", "status"}).numbers({"held-out error", "error taken away", "p"}).text({"parameters", "why"});
-  table.folded = true;
-  for (const EffectFinding* f : sorted_findings(d, Order::status)) {
-    std::string parameters;
-    if (f->status == EffectStatus::found || f->status == EffectStatus::equivalent) {
-      for (const FitParameter& p : f->parameters) {
-        parameters += (parameters.empty() ? "" : "; ") + p.parameter.name + " = " + value_text(p, motion);
-      }
-    }
-    table.rows.push_back({f->key, std::string(status_text(f->status)), significant(f->held_out_rmse, 3),
-                          percent(f->error_reduction), f->p_value < 1e-4 ? "< 0.0001" : significant(f->p_value, 2),
-                          parameters, f->reason});
-  }
-  return table;
-}
-
-ReportSection diagnosis_section(const DiagnosedTraces& result, const Motion& motion) {
-  const Diagnosis& d = result.diagnosis;
-  ReportSection section{"diagnosis", "Effects found", {}};
-  section.add(ladder_chart(result));
-  section.add(where_chart(result));
-  section.heading("Next experiment");
-  section.plain(d.next_experiment.empty() ? "None is needed." : d.next_experiment);
-  if (!d.formula.empty()) {
-    section.heading("A closed form of what remains, for --formula");
-    section.command(d.formula);
-  }
-  for (std::size_t k = d.runs_differ ? 1 : 0; k < d.messages.size(); ++k) section.plain(d.messages[k]);
-  if (!d.confirmations.empty()) section.heading("On runs not used in the fit");
-  for (const Confirmation& c : d.confirmations) {
-    section.item(confirmation_sentence(c, result));
-  }
-  section.add(candidates_chart(result));
-  section.add(effects_table(d, motion));
-  return section;
-}
-
-}  // namespace
-
-Report report_of(const DiagnosedTraces& result, const ReportOptions& options) {
-  const Motion none;
-  const Motion& motion = result.traces.empty() ? none : result.traces.front().motion;
-  const std::size_t count = result.traces.size(), drawn = std::min(count, kDrawnTraces);
-  const std::string title =
-      count == 1 ? file_name(result.traces.front().path) : fmt::format("{} traces together", count);
-  Report report = titled_report("diagnosis", title, "Diagnosis", diagnosis_verdict(result));
-  for (const Identification& trace : result.traces) {
-    report.warnings.insert(report.warnings.end(), trace.warnings.begin(), trace.warnings.end());
-  }
-  report.facts = model_facts("final model", result.fits, result.best, motion);
-  if (count == 1) {
-    const Facts record = facts_of(result.traces.front());
-    report.facts.insert(report.facts.end(), record.begin(), record.end());
-  }
-  const auto bare = [&](const Fit& fit) { return fit.model.law() == result.diagnosis.law; };
-  const std::vector<const Fit*> models = drawn_models(result.fits, result.best, 2, bare);
-  const std::vector<const Fit*> curves = drawn_curves(models, result.rungs);
-  TraceSections sections;
-  for (std::size_t k = 0; k < drawn; ++k) {
-    const Identification& trace = result.traces[k];
-    if (drawn > 1) {
-      for (ReportSection* s : {&sections.trace, &sections.law, &sections.errors, &sections.cycles}) {
-        s->heading(trace.path);
-      }
-    }
-    sections.add_trace(DrawnTrace(trace, models, curves, fmt::format("t{}", k + 1), 1 / static_cast<double>(drawn), k));
-  }
-  if (count > drawn) {
-    sections.trace.plain(fmt::format("The first {} of {} traces are drawn.", drawn, count));
-  }
-  if (count > 0) sections.trace.add(health_table(result.traces));
-  add_fits(result.fits, result.best, motion, options.instruments_declared, Fits::all, sections.law);
-  if (!result.fits.empty()) sections.law.add(profile_charts(result.fits[result.best], motion, "best"));
-  sections.add_sources();
-  report.add({diagnosis_section(result, motion), sections.trace, sections.law, sections.errors, sections.cycles,
-              run_section(diagnose_command(result, options), result.traces, next_after_diagnosis(result, options))});
-  return report;
 }
 
 }  // namespace tribofit
