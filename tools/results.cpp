@@ -45,8 +45,8 @@ void check_figures(const Settings& s) {
   }
   if (!can_write_pictures(picture_format(s))) {
     throw UsageError("--format " + s.picture_format +
-                     ": this build leaves it out; use --format svg, or build where Cairo is installed "
-                     "(scripts/setup figures)");
+                     ": this build leaves it out; use --format svg, or build where librsvg is "
+                     "installed (scripts/setup figures)");
   }
 }
 

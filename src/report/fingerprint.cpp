@@ -49,31 +49,27 @@ std::string render_fingerprint(const Fingerprint& print, const TerminalOptions& 
   const std::size_t columns = std::clamp<std::size_t>(options.width, 40, 80) - kMargin - 1;
   const PlotRange x = range_of(print, &FingerprintCloud::x, print.x.si);
   const PlotRange y = range_of(print, &FingerprintCloud::y, print.y.si);
-  const auto sign = [&](const char* full, const char* plain) { return std::string(options.unicode ? full : plain); };
-  const std::string marks[] = {sign("\u2022", "*"), sign("\u25e6", "o")}, zero = sign("\u2508", ".");
-  const auto mark_of = [&](std::size_t cloud) { return marks[std::min<std::size_t>(cloud, 1)]; };
+  const auto sign = [&](const char* full, const char* plain) { return options.unicode ? full : plain; };
+  const auto mark_of = [&](std::size_t cloud) { return cloud == 0 ? sign("\u2022", "*") : sign("\u25e6", "o"); };
+  const auto row_of = [](double value, const PlotRange& range) { return kRows - 1 - range.cell(value, kRows); };
   std::vector<std::vector<std::string>> cells(kRows, std::vector<std::string>(columns, " "));
-  if (y.low < 0 && y.high > 0) cells[kRows - 1 - y.cell(0, kRows)].assign(columns, zero);
+  if (y.low < 0 && y.high > 0) cells[row_of(0, y)].assign(columns, sign("\u2508", "."));
   for (std::size_t k = print.clouds.size(); k-- > 0;) {  // the first lies on top
     const FingerprintCloud& cloud = print.clouds[k];
     for (std::size_t i = 0; i < cloud.x.size(); ++i) {
-      cells[kRows - 1 - y.cell(cloud.y[i] / print.y.si, kRows)][x.cell(cloud.x[i] / print.x.si, columns)] = mark_of(k);
+      cells[row_of(cloud.y[i] / print.y.si, y)][x.cell(cloud.x[i] / print.x.si, columns)] = mark_of(k);
     }
   }
   std::string text = "  " + with_unit(print.y.label, print.y.unit);
   for (std::size_t k = 0; k < print.clouds.size(); ++k) {
-    if (!print.clouds[k].name.empty()) text += "   " + mark_of(k) + " " + print.clouds[k].name;
+    if (!print.clouds[k].name.empty()) text += fmt::format("   {} {}", mark_of(k), print.clouds[k].name);
   }
-  text += "\n";
   for (std::size_t row = 0; row < kRows; ++row) {
     const std::string end = row == 0 ? end_of(y.high, y) : row + 1 == kRows ? end_of(y.low, y) : "";
-    text += fmt::format("{:>{}} {}", end, kMargin - 2, sign("\u2502", "|"));
-    std::size_t last = columns;
-    while (last > 0 && cells[row][last - 1] == " ") --last;
-    for (std::size_t i = 0; i < last; ++i) text += cells[row][i];
-    text += "\n";
+    while (!cells[row].empty() && cells[row].back() == " ") cells[row].pop_back();
+    text += fmt::format("\n{:>{}} {}{}", end, kMargin - 2, sign("\u2502", "|"), fmt::join(cells[row], ""));
   }
-  text += std::string(kMargin - 1, ' ') + sign("\u2514", "+");
+  text += fmt::format("\n{:{}}{}", "", kMargin - 1, sign("\u2514", "+"));
   for (std::size_t i = 0; i < columns; ++i) text += sign("\u2500", "-");
   const std::string left = end_of(x.low, x), label = with_unit(print.x.label, print.x.unit), right = end_of(x.high, x);
   const std::size_t used = left.size() + label.size() + right.size(), gap = columns > used ? columns - used : 2;

@@ -98,13 +98,13 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"OptionsBeforeTheVerb", "--radius 15mm effects", "effects"}),
     [](const auto& param_info) { return param_info.param.name; });
 
-TEST(Usage, SomeFormatsOfFiguresNeedCairo) {
-  if (tribofit::can_write_pictures(tribofit::PictureFormat::pdf)) GTEST_SKIP() << "this build has Cairo";
+TEST(Usage, SomeFormatsOfFiguresNeedLibrsvg) {
+  if (tribofit::can_write_pictures(tribofit::PictureFormat::pdf)) GTEST_SKIP() << "this build has librsvg";
   const Workshop shop;
   shop.write("a.csv", good_trace());
   const Outcome outcome = shop.identify("--radius 15mm --figures out --format pdf a.csv");
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("Cairo"), HasSubstr("--format svg")));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("librsvg"), HasSubstr("--format svg")));
 }
 
 TEST(Usage, HelpAndVersion) {

@@ -199,7 +199,7 @@ TEST(PictureLayout, KeepsTheLegendBelowTheData) {
   for (const Key& key : layout.keys) {
     EXPECT_LT(key.y, layout.x_title_y);
     EXPECT_GT(key.y, 0);
-    EXPECT_LT(key.x + kKeySample + kKeyGap + width_of(key.name), kPictureWidth);
+    EXPECT_LT(key.x + sizes.key_sample + sizes.key_gap + width_of(key.name), sizes.width);
   }
   ASSERT_EQ(layout.panels.size(), 2u);
   EXPECT_GT(layout.panels[0].bottom, layout.panels[1].bottom + layout.panels[1].height);

@@ -11,8 +11,8 @@ class WholeFolder;
 
 /// Charts of a report as pictures for a paper: a file of each, as wide as a column of a journal (85 mm), with a
 /// sans-serif face of 8 points and units in the titles of its axes. Their captions belong to the paper: figures.txt
-/// beside them has title and note of each. SVG keeps its texts as text; PDF (letters embedded) and PNG are drawn by
-/// Cairo, which a build may leave out. What is where is the same in all of them, on every machine.
+/// beside them has title and note of each. SVG keeps its texts as text; PDF (with its letters) and PNG are made of it
+/// by librsvg, which a build may leave out. What is where is the same in all of them, on every machine.
 
 enum class PictureFormat { svg, pdf, png };
 inline constexpr int kPicturePixelsPerInch = 600;  ///< of PNG
@@ -20,7 +20,7 @@ inline constexpr int kPicturePixelsPerInch = 600;  ///< of PNG
 /// "svg", "pdf", "png".
 std::string name_of(PictureFormat format);
 
-/// Whether this build writes this format: SVG always, PDF and PNG where Cairo was found.
+/// Whether this build writes this format: SVG always, PDF and PNG where librsvg was found.
 bool can_write_pictures(PictureFormat format);
 
 /// Pictures of all charts of a report, made and on the disc but without their names until commit().
@@ -31,15 +31,11 @@ bool can_write_pictures(PictureFormat format);
 class PictureFiles {
  public:
   PictureFiles(const Report& report, const std::string& folder, PictureFormat format);
-  ~PictureFiles();
-  PictureFiles(PictureFiles&&) noexcept;
-  PictureFiles& operator=(PictureFiles&&) noexcept;
-
   /// Gives the files their names: ID.svg (pdf, png) of each chart and figures.txt.
   void commit();
 
  private:
-  std::unique_ptr<WholeFolder> folder_;
+  std::shared_ptr<WholeFolder> folder_;
 };
 
 /// Writes the pictures of a report into `folder`, all of them or none.

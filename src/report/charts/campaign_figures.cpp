@@ -135,30 +135,32 @@ Chart other_parameters_chart(const DrawnCampaign& campaign, const OverConditions
                      fmt::format(" From top to bottom: {}.", fmt::join(names, ", ")));
 }
 
-/// A chart with a panel for each of the groups shown.
-template <class AddLine>
-Chart panels_of_groups(const DrawnCampaign& campaign, const std::string& id, const std::string& title,
-                       const ChartAxis& x, const ChartAxis& y, AddLine&& add) {
-  Chart chart{.id = id, .title = title, .x = x, .panels = {}};
+/// A chart with a panel for each of the groups shown; add: from the figures of a run to a line.
+template <class Add>
+Chart panels_of_groups(const DrawnCampaign& campaign, const char* id, const char* title, ChartAxis x,
+                       const ChartAxis& y, Add add) {
+  Chart chart{.id = id, .title = title, .x = std::move(x), .panels = {}};
+  std::vector<std::string> from;
   for (const std::size_t g : campaign.shown) {
     const auto drawn = first_figures(campaign.results, campaign.runs, campaign.groups[g]);
     if (!drawn) continue;
-    ChartLine line{conditions_text(campaign.groups[g]), {}, {}, stroke_of(chart.panels.size())};
+    const std::string conditions = conditions_text(campaign.groups[g]);
+    ChartLine& line = chart.line(conditions, stroke_of(chart.panels.size()), chart.panels.size());
     line.stroke.dash = Dash::solid;  // each has a panel of its own
     add(drawn->figures, line);
-    if (line.x.empty()) continue;
-    line.panel = chart.panels.size();
+    if (line.x.empty()) {
+      chart.lines.pop_back();
+      continue;
+    }
     chart.panels.push_back({.axis = y});
-    chart.note += (chart.note.empty() ? "From top to bottom: " : "; ") + conditions_text(campaign.groups[g]) + " (" +
-                  drawn->run + ")";
-    chart.lines.push_back(std::move(line));
+    from.push_back(fmt::format("{} ({})", conditions, drawn->run));
   }
-  if (!chart.note.empty()) chart.note += ".";
+  if (!from.empty()) chart.note = fmt::format("From top to bottom: {}.", fmt::join(from, "; "));
   chart.height = 110 + 120 * static_cast<int>(std::max<std::size_t>(1, chart.panels.size()));
   return chart;
 }
 
-Chart cycles_chart(const DrawnCampaign& campaign, const char* id, const char* title, ChartAxis y,
+Chart cycles_chart(const DrawnCampaign& campaign, const char* id, const char* title, const ChartAxis& y,
                    std::vector<double> RunFigures::*channel) {
   return panels_of_groups(campaign, id, title, {.quantity = "time", .unit = "s", .from_zero = true, .digits = 7}, y,
                           [&](const RunFigures& f, ChartLine& line) {
@@ -178,52 +180,37 @@ Chart spectrum_chart(const DrawnCampaign& campaign) {
                           });
 }
 
-/// A chart of values in bins of v_r, a line a fit; those of the per-cycle extremes are switched off at first.
-template <class Values>
-void add_over_bins(const RunFigures& f, bool with_symbols, Values values, Chart& chart) {
-  chart.x = {.quantity = "v_{r}", .unit = "mm/s", .from_zero = true};
-  chart.half = true;
-  std::vector<double> middles;
-  for (std::size_t b = 0; b < f.bin_samples.size(); ++b) {
-    middles.push_back((static_cast<double>(b) + 0.5) * f.bin_width);
-  }
-  for (ChartLine& line : chart.lines) line.x = middles;
+/// Measured and fitted friction of a run over v_r (Fig 10 and 11 of [D]), and the relative error of the mean friction
+/// of each bin (Fig 12); the per-cycle extremes are switched off at first.
+void add_run(const FiguresOfRun& run, const std::string& conditions, const std::string& unit, std::size_t number,
+             ReportSection& section) {
+  const RunFigures& f = run.figures;
+  const ChartAxis speed{.quantity = "v_{r}", .unit = "mm/s", .from_zero = true};
+  Chart friction = half_chart(fmt::format("fig10-friction-{}", number), "Friction over velocity, " + conditions, speed,
+                              {"mu", unit});
+  friction.note = "Means in bins of v_r of " + run.run + ", and what the laws say there.";
+  Chart error = half_chart(fmt::format("fig12-error-{}", number), "Relative error, " + conditions, speed,
+                           {.quantity = "relative error", .unit = "1", .from_zero = true});
+  error.note = "Of the mean friction of each bin.";
+  error.marks = {{published_error_limit, false, Dash::dashed, "8 %", 0}};
+  friction.line("measured", dots(Colour::black, Symbol::circle)).y = f.bin_friction;
   for (std::size_t k = 0; k < f.errors.size(); ++k) {
     const ErrorCurve& curve = f.errors[k];
     const bool published = curve.protocol == to_string(Protocol::published);
-    Stroke stroke = with_symbols ? marked(k + 1) : stroke_of(k + 1);
-    stroke.size = 4;
-    chart.lines.push_back({.name = curve.law + (published ? ", " + protocol_text(Protocol::published) : ""),
-                           .x = middles,
-                           .y = values(curve),
-                           .stroke = stroke,
-                           .shown = !published});
+    const std::string name = curve.law + (published ? ", " + protocol_text(Protocol::published) : "");
+    friction.line(name, stroke_of(k + 1)).y = curve.fitted;
+    ChartLine& errors = error.line(name, marked(k + 1));
+    errors.stroke.size = 4;
+    for (std::size_t b = 0; b < f.bin_friction.size(); ++b) errors.y.push_back(f.error_of_mean(curve, b));
+    errors.shown = friction.lines.back().shown = !published;
   }
-}
-
-/// Measured and fitted friction of a run over v_r (Fig 10 and 11 of [D]).
-Chart friction_chart(const RunFigures& f, const std::string& unit) {
-  Chart chart{.panels = {{.axis = {.quantity = "mu", .unit = unit}}},
-              .lines = {{.name = "measured", .y = f.bin_friction, .stroke = dots(Colour::black, Symbol::circle)}}};
-  add_over_bins(
-      f, false, [](const ErrorCurve& curve) { return curve.fitted; }, chart);
-  return chart;
-}
-
-/// Relative error of the mean friction of a bin (Fig 12 of [D]).
-Chart error_chart(const RunFigures& f) {
-  Chart chart{.note = "Of the mean friction of each bin.",
-              .panels = {{.axis = {.quantity = "relative error", .unit = "1", .from_zero = true}}},
-              .marks = {{published_error_limit, false, Dash::dashed, "8 %", 0}}};
-  const auto error = [&](const ErrorCurve& curve) {
-    std::vector<double> errors;
-    for (std::size_t b = 0; b < f.bin_friction.size(); ++b) {
-      errors.push_back(f.error_of_mean(curve, b));
+  for (Chart* chart : {&friction, &error}) {
+    for (ChartLine& line : chart->lines) {
+      for (std::size_t b = 0; b < f.bin_samples.size(); ++b)
+        line.x.push_back((static_cast<double>(b) + 0.5) * f.bin_width);
     }
-    return errors;
-  };
-  add_over_bins(f, true, error, chart);
-  return chart;
+    section.add(std::move(*chart));
+  }
 }
 
 }  // namespace
@@ -278,14 +265,7 @@ ReportSection law_figures(const DrawnCampaign& campaign) {
   for (std::size_t k = 0; k < campaign.shown.size(); ++k) {
     const auto drawn = first_figures(campaign.results, campaign.runs, campaign.groups[campaign.shown[k]]);
     if (!drawn || drawn->figures.errors.empty()) continue;
-    Chart friction = friction_chart(drawn->figures, campaign.friction_unit()), error = error_chart(drawn->figures);
-    friction.id = fmt::format("fig10-friction-{}", k + 1);
-    friction.title = "Friction over velocity, " + conditions_text(campaign.groups[campaign.shown[k]]);
-    friction.note = "Means in bins of v_r of " + drawn->run + ", and what the laws say there.";
-    error.id = fmt::format("fig12-error-{}", k + 1);
-    error.title = "Relative error, " + conditions_text(campaign.groups[campaign.shown[k]]);
-    section.add(std::move(friction));
-    section.add(std::move(error));
+    add_run(*drawn, conditions_text(campaign.groups[campaign.shown[k]]), campaign.friction_unit(), k + 1, section);
   }
   return section;
 }

@@ -28,10 +28,12 @@ constexpr std::array<BranchStyle, 3> kBranches = {
     BranchStyle{"slowing down", {Colour::red, Dash::dashed, Symbol::triangle_down, 1.6, 5}},
     BranchStyle{"slip", {Colour::blue, Dash::solid, Symbol::circle, 1.6, 5}}};
 
-/// Adds a band over cycles; speeds come in m/s.
-ChartLine& add_band(const std::string& name, CycleBand band, const Stroke& stroke, Chart& chart) {
-  return chart.lines.emplace_back(
-      ChartLine{name, in_unit(band.at, kMillimetre), band.middle, stroke, band.low, band.high});
+/// Adds a band over cycles, or its middle alone; speeds come in m/s.
+ChartLine& add_band(const std::string& name, const CycleBand& band, bool whole, const Stroke& stroke, Chart& chart) {
+  ChartLine& line = chart.line(name, stroke);
+  line.x = in_unit(band.at, kMillimetre), line.y = band.middle;
+  if (whole) line.low = band.low, line.high = band.high;
+  return line;
 }
 
 /// What a model leaves of every sample, in units of the noise floor.
@@ -45,11 +47,11 @@ std::vector<double> residuals_of(const DrawnTrace& d, std::size_t model) {
 }
 
 /// The stroke of a model on one branch, whose symbol it has.
-Stroke on_branch(std::size_t model, const BranchStyle& branch) {
+Stroke on_branch(std::size_t model, Branch branch, double width) {
   Stroke stroke = model_stroke(model);
-  stroke.symbol = branch.stroke.symbol;
+  stroke.symbol = style_of(branch, kBranches).stroke.symbol;
   stroke.size = 4;
-  stroke.width = 1.3;
+  stroke.width = width;
   return stroke;
 }
 
@@ -58,53 +60,20 @@ bool has_loop(const Fit& fit) {
   return !fit.model.effects().empty();
 }
 
-/// Bands over speed of what was measured, and of each model along the slips, where it has a loop, and of what it
-/// leaves.
-struct LawBands {
-  std::vector<BranchBand> measured;
-  std::vector<std::vector<BranchBand>> loops, residuals;
-};
-
-LawBands bands_of(const DrawnTrace& d) {
+/// Bands over speed: of the measurement, then of what each model leaves, then of what each says along the slips, where
+/// that is a loop.
+std::vector<std::vector<BranchBand>> bands_of(const DrawnTrace& d) {
   const std::size_t models = d.models.size();
-  LawBands out{{}, std::vector<std::vector<BranchBand>>(models), std::vector<std::vector<BranchBand>>(models)};
-  const auto over_speed = [&](const std::vector<double>& values) {
-    return bands_over_speed(d.trace.motion, d.pieces, values, kSpeedBins);
-  };
-  run_tasks(1 + 2 * models, d.threads, [&](std::size_t k) {
-    const std::size_t m = k / 2;
-    if (m == models) {
-      out.measured = over_speed(d.trace.motion.friction);
-    } else if (k % 2 == 0) {
-      out.residuals[m] = over_speed(residuals_of(d, m));
-    } else if (has_loop(*d.models[m])) {
-      out.loops[m] = over_speed(d.predictions[m]);
-    }
+  std::vector<std::vector<BranchBand>> bands(1 + 2 * models);
+  run_tasks(bands.size(), d.threads, [&](std::size_t k) {
+    if (k > models && !has_loop(*d.models[k - 1 - models])) return;
+    bands[k] = bands_over_speed(d.trace.motion, d.pieces,
+                                k == 0        ? d.trace.motion.friction
+                                : k <= models ? residuals_of(d, k - 1)
+                                              : d.predictions[k - 1 - models],
+                                kSpeedBins);
   });
-  return out;
-}
-
-/// Residuals of each model on both branches, in its colour and switched with its line.
-void add_residuals(const DrawnTrace& d, const LawBands& bands, Chart& chart) {
-  for (std::size_t m = 0; m < d.models.size(); ++m) {
-    for (const auto& [branch, band] : bands.residuals[m]) {
-      ChartLine& line = add_band(curve_name(*d.models[m]), band, on_branch(m, style_of(branch, kBranches)), chart);
-      line.panel = 1;
-      line.listed = false;
-      if (m > 0) line.low.clear(), line.high.clear();  // one band is enough to look at
-    }
-  }
-}
-
-/// What models with effects say along the slips, branch by branch: the loop that the measurement goes through, too.
-void add_loops(const DrawnTrace& d, const LawBands& bands, Chart& chart) {
-  for (std::size_t m = 0; m < d.models.size(); ++m) {
-    for (const auto& [branch, band] : bands.loops[m]) {
-      ChartLine& line = add_band(curve_name(*d.models[m]), band, on_branch(m, style_of(branch, kBranches)), chart);
-      line.stroke.width = 2;
-      line.low.clear(), line.high.clear();
-    }
-  }
+  return bands;
 }
 
 void add_break_aways(const DrawnTrace& d, Chart& chart) {
@@ -155,16 +124,6 @@ void add_residual_panel(Chart& chart) {
   chart.panels.push_back({{"residual / noise floor", "1"}});
   chart.marks.push_back({2, false, Dash::dotted, "+2 noise floors", 1});
   chart.marks.push_back({-2, false, Dash::dotted, "−2 noise floors", 1});
-}
-
-/// Speeds at which laws are drawn beside points [m/s].
-std::vector<double> speeds_of(double slowest, double fastest, bool logarithmic) {
-  std::vector<double> speeds;
-  for (std::size_t k = 0; k < kCurvePoints; ++k) {
-    const double part = static_cast<double>(k) / (kCurvePoints - 1.0);
-    speeds.push_back(logarithmic ? slowest * std::pow(fastest / slowest, part) : fastest * part);
-  }
-  return speeds;
 }
 
 /// Values of every point over its speed, with their standard errors where there are any.
@@ -237,17 +196,6 @@ Chart map_chart(const DrawnTrace& d, std::size_t model) {
   return chart;
 }
 
-/// Those of the first two models, on one scale.
-void add_maps(const DrawnTrace& d, std::vector<Chart>& charts) {
-  double most = 0;
-  const std::size_t first = charts.size();
-  for (std::size_t k = 0; k < std::min<std::size_t>(2, d.models.size()); ++k) {
-    charts.push_back(map_chart(d, k));
-    most = std::max(most, charts.back().map->high);
-  }
-  for (std::size_t k = first; k < charts.size(); ++k) charts[k].map->low = -most, charts[k].map->high = most;
-}
-
 }  // namespace
 
 Chart law_chart(const DrawnTrace& d) {
@@ -258,18 +206,28 @@ Chart law_chart(const DrawnTrace& d) {
                                "along the slips, through both branches; its line of steady sliding, at the start of "
                                "the record and over a turn of the disc, can be switched on.",
                                false);
-  const LawBands bands = bands_of(d);
-  for (const auto& [branch, band] : bands.measured) {
+  const auto bands = bands_of(d);
+  const std::size_t models = d.models.size();
+  for (const auto& [branch, band] : bands[0]) {
     const BranchStyle& style = style_of(branch, kBranches);
-    add_band("measured, " + std::string(style.name), band, style.stroke, chart);
+    add_band("measured, " + std::string(style.name), band, true, style.stroke, chart);
   }
   add_break_aways(d, chart);
-  add_loops(d, bands, chart);
+  for (std::size_t m = 0; m < models; ++m) {  // the loop that the measurement goes through, too
+    for (const auto& [branch, band] : bands[1 + models + m])
+      add_band(curve_name(*d.models[m]), band, false, on_branch(m, branch, 2), chart);
+  }
   add_curves(d, chart);
   shade_beyond(d, chart);
   if (d.models.empty()) return chart;
   add_residual_panel(chart);
-  add_residuals(d, bands, chart);
+  for (std::size_t m = 0; m < models; ++m) {  // switched with the line of the model; one band is enough to look at
+    for (const auto& [branch, band] : bands[1 + m]) {
+      ChartLine& line = add_band(curve_name(*d.models[m]), band, m == 0, on_branch(m, branch, 1.3), chart);
+      line.panel = 1;
+      line.listed = false;
+    }
+  }
   return chart;
 }
 
@@ -285,7 +243,11 @@ Chart points_chart(const DrawnTrace& d) {
                                "laws: 95 % interval. Below: what the best law leaves, in units of the noise floor.",
                                logarithmic);
   add_points(d, motion.friction, motion.friction_std_error, 0, chart);
-  const std::vector<double> speeds = speeds_of(slowest * kMillimetre, d.fastest * kMillimetre, logarithmic);
+  std::vector<double> speeds;
+  for (std::size_t k = 0; k < kCurvePoints; ++k) {
+    const double part = static_cast<double>(k) / (kCurvePoints - 1.0);
+    speeds.push_back(kMillimetre * (logarithmic ? slowest * std::pow(d.fastest / slowest, part) : d.fastest * part));
+  }
   for (std::size_t k = 0; k < d.curves.size(); ++k) {
     add_curve(*d.curves[k], law_curve(*d.curves[k], speeds, d.threads), model_stroke(k), k < 2, chart);
   }
@@ -314,7 +276,14 @@ std::vector<Chart> error_charts(const DrawnTrace& d) {
     add_errors(curve_name(*d.models[k]), k, time.result(), charts[1]);
   }
   if (m.is_points()) charts.pop_back();
-  if (d.trace.segmentation.kind == MotionKind::stick_slip) add_maps(d, charts);
+  if (d.trace.segmentation.kind != MotionKind::stick_slip) return charts;
+  double most = 0;  // the maps have one scale
+  const std::size_t first = charts.size();
+  for (std::size_t k = 0; k < std::min<std::size_t>(2, d.models.size()); ++k) {
+    charts.push_back(map_chart(d, k));
+    most = std::max(most, charts.back().map->high);
+  }
+  for (std::size_t k = first; k < charts.size(); ++k) charts[k].map->low = -most, charts[k].map->high = most;
   return charts;
 }
 

@@ -22,22 +22,19 @@ const std::string& unit_of_friction(const RateStateAnalysis& analysis) {
   return analysis.fits[analysis.best].parameters.front().parameter.unit;
 }
 
+/// What was measured between two displacements from an origin, and what the laws make of it, the best on top.
 void add_step(const RateStateAnalysis& analysis, const RateStateCurve& curve, double origin, double from, double to,
-              bool listed, Chart& chart) {
-  ChartLine measured{.name = "measured", .stroke = kMeasured, .listed = listed};
-  ChartLine other{.name = "", .stroke = model_stroke(1), .listed = listed};
-  ChartLine model{.name = law_name(analysis.fits[analysis.best]), .stroke = model_stroke(0), .listed = listed};
-  if (!curve.other.empty()) other.name = law_name(analysis.fits[1 - analysis.best]);
-  for (std::size_t i = 0; i < curve.time.size(); ++i) {
-    const double x = curve.displacement[i] - origin;
-    if (x < from || x > to) continue;
-    measured.add(x / kMicrometreOfChart, curve.friction[i]);
-    model.add(x / kMicrometreOfChart, curve.model[i]);
-    if (!curve.other.empty()) other.add(x / kMicrometreOfChart, curve.other[i]);
-  }
-  chart.lines.push_back(std::move(measured));
-  if (!curve.other.empty()) chart.lines.push_back(std::move(other));
-  chart.lines.push_back(std::move(model));
+              Chart& chart) {
+  const auto add = [&](const std::string& name, const std::vector<double>& values, const Stroke& stroke) {
+    ChartLine& line = chart.line(name, stroke);
+    for (std::size_t i = 0; i < curve.time.size(); ++i) {
+      const double x = curve.displacement[i] - origin;
+      if (!(x < from || x > to)) line.add(x / kMicrometreOfChart, values[i]);
+    }
+  };
+  add("measured", curve.friction, kMeasured);
+  if (!curve.other.empty()) add(law_name(analysis.fits[1 - analysis.best]), curve.other, model_stroke(1));
+  add(law_name(analysis.fits[analysis.best]), curve.model, model_stroke(0));
 }
 
 Chart whole_chart(const RateStateAnalysis& analysis) {
@@ -50,7 +47,7 @@ Chart whole_chart(const RateStateAnalysis& analysis) {
               .height = 420};
   chart.panels[0].axis = {"friction", unit_of_friction(analysis)};
   for (const RateStateCurve& curve : analysis.curves) {
-    add_step(analysis, curve, 0, -1e300, 1e300, &curve == &analysis.curves.front(), chart);
+    add_step(analysis, curve, 0, -1e300, 1e300, chart);
     const VelocityStep& step = analysis.steps[curve.step];
     chart.marks.push_back(
         {step.displacement / kMicrometreOfChart, true, Dash::dotted,
@@ -71,7 +68,7 @@ Chart zoom_chart_of(const RateStateAnalysis& analysis, const RateStateCurve& cur
                                : fmt::format("Step {}: {} to {}", curve.step + 1, sliding_speed_text(step.before),
                                              sliding_speed_text(step.after)),
                  {"displacement since the step", "um"}, {"friction", unit_of_friction(analysis)});
-  add_step(analysis, curve, step.displacement, -kBeforeIt * distance, kBehind * distance, true, chart);
+  add_step(analysis, curve, step.displacement, -kBeforeIt * distance, kBehind * distance, chart);
   return chart;
 }
 
@@ -79,11 +76,10 @@ Chart healing_chart(const Healing& healing, const std::string& unit) {
   Chart chart = half_chart("t1-healing", "Healing: peak less sliding friction over the time at rest",
                            {"time at rest", "s"}, {"healing", unit});
   chart.x.logarithmic = true;
-  ChartLine line{.name = "holds", .stroke = dots(Colour::blue, Symbol::circle)};
+  ChartLine& line = chart.line("holds", dots(Colour::blue, Symbol::circle));
+  line.bars = true;
   for (const HoldMeasures& hold : healing.holds)
     line.add(hold.duration, hold.healing, std::hypot(hold.peak.std_error, hold.sliding.std_error));
-  line.bars = true;
-  chart.lines.push_back(std::move(line));
   return chart;
 }
 

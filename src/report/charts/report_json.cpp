@@ -21,17 +21,6 @@ std::string rgba(const Paint& paint) {
   return fmt::format("rgba({},{},{},{})", part(0), part(1), part(2), paint.opacity);
 }
 
-/// Corners as an SVG path in a box of 2 by 2 about the origin; a circle where there are none.
-std::string path_of(const SymbolStyle& style) {
-  if (style.count == 0) return "M-1,0a1,1 0 1,0 2,0a1,1 0 1,0 -2,0z";
-  std::string path;
-  for (std::size_t k = 0; k < style.count; ++k) {
-    const bool lifted = k == 0 || (style.name == "x" && k == 2);
-    path += fmt::format("{}{},{}", lifted ? 'M' : 'L', style.corners[k][0], -style.corners[k][1]);
-  }
-  return path + (style.name == "x" ? "" : "z");
-}
-
 /// Everything about styles that the page must know, under the names that lines, bars and stretches use.
 Json styles_json() {
   Json json;
@@ -46,7 +35,7 @@ Json styles_json() {
     }
     json["dashes"][dash.name] = lengths.empty() ? "solid" : lengths;
   }
-  for (const SymbolStyle& symbol : kSymbols) json["symbols"][symbol.name] = path_of(symbol);
+  for (const SymbolStyle& symbol : kSymbols) json["symbols"][symbol.name] = symbol.path;
   for (const ShadeStyle& shade : kShades) {
     json["shades"][shade.name] = {{"meaning", shade.meaning}, {"fill", rgba(shade.paint)}};
   }

@@ -57,21 +57,19 @@ struct DashStyle {
 inline constexpr std::array<DashStyle, 5> kDashes = {
     {{"solid", {}}, {"dash", {8, 4}}, {"dot", {2, 3}}, {"dashdot", {9, 3, 2, 3}}, {"longdash", {15.5, 4.5}}}};
 
-/// A symbol about as large as a circle of radius 1, ordinates upwards: an area, or strokes from each point to the next
-/// but one (the cross). By the value of Symbol; the names are those of plotly.js.
+/// A symbol about as large as a circle of radius 1, as a path of SVG. By the value of Symbol; the names are those of
+/// plotly.js.
 struct SymbolStyle {
-  std::string_view name;
-  std::size_t count;
-  std::array<std::array<double, 2>, 4> corners;
+  std::string_view name, path;
 };
-inline constexpr std::array<SymbolStyle, 7> kSymbols = {
-    {{"none", 0, {}},
-     {"circle", 0, {}},
-     {"square", 4, {{{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}}}},
-     {"diamond", 4, {{{0, -1.3}, {1.3, 0}, {0, 1.3}, {-1.3, 0}}}},
-     {"triangle-up", 3, {{{-1.25, -0.9}, {1.25, -0.9}, {0, 1.2}}}},
-     {"triangle-down", 3, {{{-1.25, 0.9}, {1.25, 0.9}, {0, -1.2}}}},
-     {"x", 4, {{{-0.9, -0.9}, {0.9, 0.9}, {-0.9, 0.9}, {0.9, -0.9}}}}}};
+inline constexpr std::string_view kRound = "M-1,0a1,1 0 1,0 2,0a1,1 0 1,0 -2,0z";
+inline constexpr std::array<SymbolStyle, 7> kSymbols = {{{"none", kRound},
+                                                         {"circle", kRound},
+                                                         {"square", "M-1,1H1V-1H-1z"},
+                                                         {"diamond", "M0,1.3L1.3,0L0,-1.3L-1.3,0z"},
+                                                         {"triangle-up", "M-1.25,0.9H1.25L0,-1.2z"},
+                                                         {"triangle-down", "M-1.25,-0.9H1.25L0,1.2z"},
+                                                         {"x", "M-0.9,0.9L0.9,-0.9M-0.9,-0.9L0.9,0.9"}}};
 
 /// Symbols of a joined line, at most: more would hide it.
 inline constexpr std::size_t kMostSymbols = 40;

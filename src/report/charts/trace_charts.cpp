@@ -28,21 +28,13 @@ struct Window {
 };
 
 /// Adds a line of the values of the window's samples.
-void add_drawn(const DrawnTrace& d, const Window& w, const std::string& name, std::span<const double> values,
-               const Stroke& stroke, std::size_t panel, Chart& chart) {
+ChartLine& add_drawn(const DrawnTrace& d, const Window& w, const std::string& name, std::span<const double> values,
+                     const Stroke& stroke, std::size_t panel, Chart& chart) {
   ChartLine& line = chart.line(name, stroke, panel);
   for (const std::size_t k : drawn_samples(values, w.bins)) {
     line.add((d.trace.motion.time[w.begin + k] - w.origin) / w.unit, values[k]);
   }
-}
-
-/// Adds a line of value(sample).
-template <class Value>
-void add_line(const DrawnTrace& d, const Window& w, const std::string& name, Value value, const Stroke& stroke,
-              std::size_t panel, Chart& chart) {
-  std::vector<double> values(w.end - w.begin);
-  for (std::size_t k = 0; k < values.size(); ++k) values[k] = value(w.begin + k);
-  add_drawn(d, w, name, values, stroke, panel, chart);
+  return line;
 }
 
 /// Friction with its models above; below v_b with the disc where the block moves against one of known speed, else v_r.
@@ -54,22 +46,21 @@ Chart window_chart(const DrawnTrace& d, const Window& w, bool with_models) {
   const auto in = [&](const std::vector<double>& values) {
     return std::span(values).subspan(w.begin, w.end - w.begin);
   };
-  const auto disc = [&](std::size_t i) { return motion.disc_velocity_at(i) / kMillimetre; };
-  const auto velocity = [&](std::size_t i) {
+  std::vector<double> velocity, disc;
+  for (std::size_t i = w.begin; i < w.end; ++i) {
     const double v_r = motion.relative_velocity[i];
-    return (of_block ? motion.disc_velocity_at(i) - v_r : v_r) / kMillimetre;
-  };
+    if (of_block) disc.push_back(motion.disc_velocity_at(i) / kMillimetre);
+    velocity.push_back((of_block ? motion.disc_velocity_at(i) - v_r : v_r) / kMillimetre);
+  }
   Chart chart{.x = {.quantity = "time", .unit = "s", .digits = kTimeDigits},
               .panels = {{friction_axis(motion), 1.3}, {{of_block ? "v_{b}" : "v_{r}", "mm/s"}}}};
   add_drawn(d, w, "measured", in(motion.friction), kMeasured, 0, chart);
   for (std::size_t k = 0; with_models && k < d.models.size(); ++k) {
-    add_drawn(d, w, curve_name(*d.models[k]), in(d.predictions[k]), model_stroke(k), 0, chart);
-    chart.lines.back().shown = k < 2;
+    add_drawn(d, w, curve_name(*d.models[k]), in(d.predictions[k]), model_stroke(k), 0, chart).shown = k < 2;
   }
-  add_line(d, w, "measured", velocity, kMeasured, 1, chart);
+  add_drawn(d, w, "measured", velocity, kMeasured, 1, chart);
   if (!of_block) return chart;
-  const Window ends{w.begin, w.end, varies ? w.bins : 1, w.origin, w.unit};
-  add_line(d, ends, "ω r of the disc", disc, kDisc, 1, chart);
+  add_drawn(d, {w.begin, w.end, varies ? w.bins : 1, w.origin, w.unit}, "ω r of the disc", disc, kDisc, 1, chart);
   return chart;
 }
 

@@ -11,10 +11,10 @@ constexpr Paint kGrid = {kGridColour}, kMark = {kAxisColour};
 /// Everything about one picture but the data.
 class Drawing {
  public:
-  Drawing(const Chart& chart, const PictureLayout& layout, Canvas& canvas)
-      : chart_(chart), layout_(layout), canvas_(canvas) {}
+  explicit Drawing(const Chart& chart)
+      : chart_(chart), layout_(layout_of(chart)), sheet_(sizes.width, layout_.height, one_line(chart.title)) {}
 
-  void draw() {
+  std::string drawn() {
     for (std::size_t k = 0; k < layout_.panels.size(); ++k) {
       const PanelFrame f = frame(k);
       draw_ground(f);
@@ -23,20 +23,19 @@ class Drawing {
       for (const ChartLine& one : chart_.lines) {
         if (one.shown && one.panel == k) draw_line(f, one);
       }
-      draw_axes(f);
+      draw_axes(f, k);
       draw_marks(f, k);
       if (k == 0) draw_upright_words(f);
       draw_labels(f, k);
     }
-    draw_numbers();
-    draw_titles();
-    draw_keys();
+    draw_title_of_abscissa();
+    for (const Key& key : layout_.keys) draw_key(key);
     if (chart_.map) draw_colour_box();
+    return sheet_.finish();
   }
 
  private:
-  PanelFrame frame(std::size_t panel) const { return {layout_.x, layout_.y[panel], layout_.panels[panel], canvas_}; }
-  void line(const Point& from, const Point& to, const Pen& pen = {}) { canvas_.stroke_path({from, to}, pen); }
+  PanelFrame frame(std::size_t panel) { return {layout_.x, layout_.y[panel], layout_.panels[panel], sheet_}; }
 
   /// Shaded stretches and the grid.
   void draw_ground(const PanelFrame& f) {
@@ -45,25 +44,48 @@ class Drawing {
       const double from = std::clamp(f.across(stretch.from), f.area.left, right);
       const double to = std::clamp(f.across(stretch.to), f.area.left, right);
       if (!(std::abs(to - from) > 0)) continue;  // elsewhere, or nowhere on a logarithmic axis
-      canvas_.fill_path(Area{from, bottom, to - from, f.area.height}.corners(), style_of(stretch.shade, kShades).paint);
+      sheet_.fill(Area{from, bottom, to - from, f.area.height}, style_of(stretch.shade, kShades).paint);
     }
     std::vector<Path> grid;
     for (const Scale::Tic& tic : f.x.tics) grid.push_back({{f.across(tic.at), bottom}, {f.across(tic.at), top}});
     for (const Scale::Tic& tic : f.y.tics) grid.push_back({{f.area.left, f.up(tic.at)}, {right, f.up(tic.at)}});
-    canvas_.stroke(grid, {kGrid, 0.35});
+    sheet_.stroke(grid, {kGrid, 0.35});
   }
 
-  void draw_axes(const PanelFrame& f) {
-    constexpr double kTic = 0.7;
+  /// With their numbers or names, and the title of the ordinate.
+  void draw_axes(const PanelFrame& f, std::size_t panel) {
     const double left = f.area.left, bottom = f.area.bottom;
     std::vector<Path> lines = {{{left, f.area.top()}, {left, bottom}, {f.area.right(), bottom}}};
+    const bool lowest = panel + 1 == layout_.panels.size(), upright = layout_.upright_names;
     for (const Scale::Tic& tic : f.x.tics) {
-      if (!f.x.named) lines.push_back({{f.across(tic.at), bottom}, {f.across(tic.at), bottom - kTic}});
+      const double x = f.across(tic.at), y = bottom - sizes.tic_gap - (upright ? 0 : sizes.text_line / 2);
+      if (!f.x.named) lines.push_back({{x, bottom}, {x, bottom - sizes.tic}});
+      if (!lowest) continue;
+      sheet_.write({.text = tic.text,
+                    .at = {x, y},
+                    .anchor = upright ? Anchor::right : Anchor::centre,
+                    .upright = upright,
+                    .markup = !f.x.named});
     }
     for (const Scale::Tic& tic : f.y.tics) {
-      if (!f.y.named) lines.push_back({{left, f.up(tic.at)}, {left - kTic, f.up(tic.at)}});
+      const double y = f.up(tic.at);
+      if (!f.y.named) lines.push_back({{left, y}, {left - sizes.tic, y}});
+      sheet_.write({.text = tic.text, .at = {left - sizes.tic_gap, y}, .anchor = Anchor::right, .markup = !f.y.named});
     }
-    canvas_.stroke(lines, {});
+    sheet_.stroke(lines, {});
+    double x = layout_.title_x;
+    for (const std::string& title : layout_.titles[panel]) {
+      write_upright(title, {x, bottom + f.area.height / 2});
+      x += sizes.text_line;
+    }
+  }
+
+  void write_upright(const std::string& title, const Point& at) {
+    sheet_.write({.text = title, .at = at, .anchor = Anchor::centre, .upright = true});
+  }
+
+  void write_beside(const std::string& text, const Point& at, Anchor anchor = Anchor::left) {
+    sheet_.write({.text = text, .at = at, .anchor = anchor, .points = sizes.small_text, .halo = true});
   }
 
   /// Points of the lines of a panel within an area.
@@ -87,135 +109,86 @@ class Drawing {
       const double part = mark.upright ? f.x.part(mark.at) : f.y.part(mark.at);
       if (!(part >= 0 && part <= 1) || (!mark.upright && mark.panel != panel)) continue;
       if (mark.upright) {
-        line({f.across(mark.at), bottom}, {f.across(mark.at), top}, pen);
+        sheet_.stroke({{f.across(mark.at), bottom}, {f.across(mark.at), top}}, pen);
         continue;
       }
       const double y = f.up(mark.at);
-      line({left, y}, {right, y}, pen);
+      sheet_.stroke({{left, y}, {right, y}}, pen);
       if (mark.text.empty()) continue;
-      const double width = width_of(mark.text, kSmallTextPoints);
-      const double low = top - y < kMarkLine ? y - 2 * kHalf : y;
-      const double first = left + kBesideMark, last = right - kBesideMark - width;
+      const double width = width_of(mark.text, sizes.small_text);
+      const double low = top - y < sizes.mark_line ? y - 2 * kHalf : y;
+      const double first = left + sizes.beside_mark, last = right - sizes.beside_mark - width;
       const auto hidden = [&](double from) {
         return points_in({from - kReach, low - kReach, width + 2 * kReach, 2 * (kHalf + kReach)}, f, panel);
       };
-      canvas_.write({.text = mark.text,
-                     .at = {hidden(first) > hidden(last) ? last : first, low + kHalf},
-                     .points = kSmallTextPoints,
-                     .halo = true});
+      write_beside(mark.text, {hidden(first) > hidden(last) ? last : first, low + kHalf});
     }
   }
 
   void draw_upright_words(const PanelFrame& f) {
     for (const UprightWords& words : layout_.upright_words) {
-      const double y = f.area.top() - kMarkLine * (static_cast<double>(words.row) + 0.5);
-      canvas_.write(
-          {.text = words.mark->text, .at = {f.area.left + words.from, y}, .points = kSmallTextPoints, .halo = true});
+      const double y = f.area.top() - sizes.mark_line * (static_cast<double>(words.row) + 0.5);
+      write_beside(words.mark->text, {f.area.left + words.from, y});
     }
   }
 
   /// Above their points, within the panel.
   void draw_labels(const PanelFrame& f, std::size_t panel) {
-    constexpr double kAbove = 2.6;
     for (const ChartLabel& label : chart_.labels) {
       const Point at = f.at(label.x, label.y);
       if (label.panel != panel || !f.area.holds(at)) continue;
-      const double half = std::min(width_of(label.text, kSmallTextPoints), f.area.width) / 2;
+      const double half = std::min(width_of(label.text, sizes.small_text), f.area.width) / 2;
       const double middle = std::clamp(at.x, f.area.left + half, f.area.right() - half);
-      const bool below = f.area.top() - at.y < kAbove + 1.5;
-      canvas_.write({.text = label.text,
-                     .at = {middle, at.y + (below ? -kAbove : kAbove)},
-                     .anchor = Anchor::centre,
-                     .points = kSmallTextPoints,
-                     .halo = true});
+      const bool below = f.area.top() - at.y < sizes.above_label + 1.5;
+      write_beside(label.text, {middle, at.y + (below ? -sizes.above_label : sizes.above_label)}, Anchor::centre);
     }
   }
 
-  /// Numbers and names at the axes.
-  void draw_numbers() {
-    const PanelFrame lowest = frame(layout_.panels.size() - 1);
-    for (const Scale::Tic& tic : layout_.x.tics) {
-      const double y = lowest.area.bottom - kTicGap - (layout_.upright_names ? 0 : kTextLine / 2);
-      canvas_.write({tic.text,
-                     {lowest.across(tic.at), y},
-                     layout_.upright_names ? Anchor::right : Anchor::centre,
-                     kTextPoints,
-                     layout_.upright_names,
-                     !layout_.x.named});
-    }
-    for (std::size_t k = 0; k < layout_.panels.size(); ++k) {
-      const PanelFrame f = frame(k);
-      for (const Scale::Tic& tic : f.y.tics) {
-        canvas_.write({tic.text, {f.area.left - kTicGap, f.up(tic.at)}, Anchor::right, kTextPoints, false, !f.y.named});
-      }
-    }
+  void draw_title_of_abscissa() {
+    const Area& area = layout_.panels.back();
+    const double half = std::min(sizes.width, width_of(layout_.x.title)) / 2;
+    const double middle = std::clamp(area.left + area.width / 2, half, sizes.width - half);
+    sheet_.write({.text = layout_.x.title, .at = {middle, layout_.x_title_y}, .anchor = Anchor::centre});
   }
 
-  void draw_titles() {
-    const Area &low = layout_.panels.back(), &high = layout_.panels.front();
-    const double half = std::min(kPictureWidth, width_of(layout_.x.title)) / 2;
-    const double middle = std::clamp(low.left + low.width / 2, half, kPictureWidth - half);
-    canvas_.write({layout_.x.title, {middle, layout_.x_title_y}, Anchor::centre});
-    for (std::size_t k = 0; k < layout_.panels.size(); ++k) {
-      const Area& area = layout_.panels[k];
-      double x = layout_.title_x;
-      for (const std::string& title : layout_.titles[k]) {
-        canvas_.write({title, {x, area.bottom + area.height / 2}, Anchor::centre, kTextPoints, true});
-        x += kTextLine;
-      }
-    }
-    if (!chart_.map) return;
-    const Point beside{layout_.colour_title_x, (low.bottom + high.top()) / 2};
-    canvas_.write({layout_.colours.title, beside, Anchor::centre, kTextPoints, true});
-  }
-
-  void draw_keys() {
-    for (const Key& key : layout_.keys) {
-      draw_sample(key);
-      canvas_.write({key.name, {key.x + kKeySample + kKeyGap, key.y}, Anchor::left, kTextPoints, false, false});
-    }
-  }
-
-  void draw_sample(const Key& key) {
-    constexpr double kHalf = 1.1;
-    const Area box{key.x, key.y - kHalf, kKeySample, 2 * kHalf};
+  void draw_key(const Key& key) {
+    const Area box{key.x, key.y - sizes.key_half, sizes.key_sample, 2 * sizes.key_half};
     if (key.stretch != nullptr) {
-      canvas_.fill_path(box.corners(), style_of(key.stretch->shade, kShades).paint);
-      canvas_.stroke_path(closed(box.corners()), {{kKeyColour}, 0.5});
+      sheet_.fill(box, style_of(key.stretch->shade, kShades).paint);
+      sheet_.stroke(box.outline(), {{kKeyColour}, 0.5});
     }
-    if (key.bars != nullptr) draw_box(canvas_, box, key.bars->colour, key.bars->hatched);
-    if (key.band != nullptr) canvas_.fill_path(box.corners(), pale(key.band->stroke.colour));
-    if (key.line == nullptr) return;
-    const Stroke& stroke = key.line->stroke;
-    if (stroke.joined) line({box.left, key.y}, {box.right(), key.y}, pen_of(stroke));
-    if (stroke.symbol != Symbol::none || !stroke.joined)
-      draw_symbols(canvas_, {{box.left + box.width / 2, key.y}}, stroke);
+    if (key.bars != nullptr) draw_box(sheet_, box, key.bars->colour, key.bars->hatched);
+    if (key.band != nullptr) sheet_.fill(box, pale(key.band->stroke.colour));
+    if (key.line != nullptr) {
+      const Stroke& stroke = key.line->stroke;
+      if (stroke.joined) sheet_.stroke({{box.left, key.y}, {box.right(), key.y}}, pen_of(stroke));
+      if (stroke.symbol != Symbol::none || !stroke.joined)
+        draw_symbols(sheet_, {{box.left + box.width / 2, key.y}}, stroke);
+    }
+    sheet_.write({.text = key.name, .at = {box.right() + sizes.key_gap, key.y}, .markup = false});
   }
 
   void draw_colour_box() {
-    constexpr int kSteps = 64;
     const Area& box = layout_.colour_box;
-    const double right = box.right(), step = box.height / kSteps;
-    for (int k = 0; k < kSteps; ++k) {  // each reaches under the next
-      const double y = box.bottom + k * step, height = std::min(box.top() - y, 1.5 * step);
-      canvas_.fill_path(Area{box.left, y, box.width, height}.corners(),
-                        {heat_colour((k + 0.5) / kSteps, colours_of(*chart_.map))});
-    }
+    const double right = box.right();
+    sheet_.shade(box, colours_of(*chart_.map));
+    write_upright(layout_.colours.title, {layout_.colour_title_x, box.bottom + box.height / 2});
     for (const Scale::Tic& tic : layout_.colours.tics) {
       const double y = box.bottom + layout_.colours.part(tic.at) * box.height;
-      line({right, y}, {right + 0.6, y});
-      canvas_.write({tic.text, {right + kTicGap, y}});
+      sheet_.stroke({{right, y}, {right + sizes.tic, y}}, {});
+      sheet_.write({.text = tic.text, .at = {right + sizes.tic_gap, y}});
     }
   }
+
   const Chart& chart_;
-  const PictureLayout& layout_;
-  Canvas& canvas_;
+  const PictureLayout layout_;
+  Svg sheet_;
 };
 
 }  // namespace
 
-void draw_chart(const Chart& chart, const PictureLayout& layout, Canvas& canvas) {
-  Drawing(chart, layout, canvas).draw();
+std::string drawn(const Chart& chart) {
+  return Drawing(chart).drawn();
 }
 
 }  // namespace tribofit

@@ -1,21 +1,22 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
-#include "report/pictures/canvas.hpp"
 #include "report/pictures/layout.hpp"
+#include "report/pictures/svg.hpp"
 #include "tribofit/report/chart.hpp"
 
 namespace tribofit {
 
-/// Draws a chart as layout_of() has laid it out.
-void draw_chart(const Chart& chart, const PictureLayout& layout, Canvas& canvas);
+/// A chart as SVG.
+std::string drawn(const Chart& chart);
 
-/// A panel as the parts of draw_chart() see it.
+/// A panel as the parts of drawn() see it.
 struct PanelFrame {
   const Scale &x, &y;
   Area area;
-  Canvas& canvas;
+  Svg& sheet;
 
   double across(double value) const { return area.left + x.part(value) * area.width; }
   double up(double value) const { return area.bottom + y.part(value) * area.height; }
@@ -30,18 +31,14 @@ void draw_map(const PanelFrame& frame, const HeatMap& map, const Scale& colours)
 
 /// The same for the legend: a pen as wide as on paper, symbols at these places, a box that is filled or hatched.
 Pen pen_of(const Stroke& stroke);
-void draw_symbols(Canvas& canvas, const Path& at, const Stroke& stroke);
-void draw_box(Canvas& canvas, const Area& box, Colour colour, bool hatched);
-/// A path that ends where it begins.
-Path closed(Path path);
+void draw_symbols(Svg& sheet, const Path& at, const Stroke& stroke);
+void draw_box(Svg& sheet, const Area& box, Colour colour, bool hatched);
+
 /// The points to draw of a line without gaps, so that it stays within `tolerance` [mm] of all of them (Douglas and
 /// Peucker 1973): what is not distinguishable on paper is left out, and no peak is lost. Cost: n log n.
 Path thinned_line(const Path& points, double tolerance);
 
 /// The same of points that are not joined: the first of those within a square of side `cell` [mm].
 Path thinned_points(const Path& points, double cell);
-
-/// Colour of a part of the heat map's range, 0 to 1.
-std::string heat_colour(double part, std::span<const std::string_view> scale);
 
 }  // namespace tribofit

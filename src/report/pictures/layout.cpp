@@ -4,15 +4,8 @@
 #include <cmath>
 #include <set>
 
-#include "report/charts/styles.hpp"
-
 namespace tribofit {
 namespace {
-
-constexpr double kMillimetresPerPixel = 0.16;  // of the height a chart has on the page
-constexpr double kEdge = 1;                    // blank at the edges
-constexpr double kBetweenPanels = 2.2, kLeastPanel = 14;
-constexpr double kColourBox = 2.5;
 
 Extent extent_of_abscissa(const Chart& chart) {
   Extent extent(chart.x.logarithmic);
@@ -88,21 +81,20 @@ std::vector<Key> keys_of(const Chart& chart) {
 
 /// Sets the entries side by side, as many as go into a row. Returns the height they take.
 double place(std::vector<Key>& keys) {
-  constexpr double kBetween = 3;
-  double x = kEdge, depth = 0;
+  double x = sizes.edge, depth = 0;
   for (Key& key : keys) {
-    key.name = shortened(key.name, kPictureWidth - 2 * kEdge - kKeySample - kKeyGap);
-    const double width = kKeySample + kKeyGap + width_of(key.name);
-    if (x > kEdge && x + width > kPictureWidth - kEdge) {
-      x = kEdge;
-      depth += kTextLine;
+    key.name = shortened(key.name, sizes.width - 2 * sizes.edge - sizes.key_sample - sizes.key_gap);
+    const double width = sizes.key_sample + sizes.key_gap + width_of(key.name);
+    if (x > sizes.edge && x + width > sizes.width - sizes.edge) {
+      x = sizes.edge;
+      depth += sizes.text_line;
     }
     key.x = x;
     key.y = depth;
-    x += width + kBetween;
+    x += width + sizes.between_keys;
   }
-  const double height = keys.empty() ? 0 : depth + kTextLine;
-  for (Key& key : keys) key.y = kEdge + height - kTextLine / 2 - key.y;
+  const double height = keys.empty() ? 0 : depth + sizes.text_line;
+  for (Key& key : keys) key.y = sizes.edge + height - sizes.text_line / 2 - key.y;
   return height;
 }
 
@@ -136,13 +128,13 @@ TitleLines broken(const std::string& title, double length) {
 
 /// Heights of the panels: what is left of the chart's height beside axis and gaps, by their parts.
 std::vector<double> heights_of(const Chart& chart) {
-  const double gaps = kBetweenPanels * static_cast<double>(chart.panels.size() - 1);
-  const double all = kMillimetresPerPixel * chart.height - 2 * kTextLine - kTicGap - 2 * kEdge - gaps;
+  const double gaps = sizes.between_panels * static_cast<double>(chart.panels.size() - 1);
+  const double all = sizes.pixel * chart.height - 2 * sizes.text_line - sizes.tic_gap - 2 * sizes.edge - gaps;
   double parts = 0;
   for (const ChartPanel& panel : chart.panels) parts += panel.part;
   std::vector<double> heights;
   for (const ChartPanel& panel : chart.panels) {
-    heights.push_back(std::max(kLeastPanel, parts > 0 ? all * panel.part / parts : 0));
+    heights.push_back(std::max(sizes.least_panel, parts > 0 ? all * panel.part / parts : 0));
   }
   return heights;
 }
@@ -163,20 +155,20 @@ void place_across(const Chart& chart, PictureLayout& layout, const std::vector<d
   std::size_t lines = 0;
   layout.titles.clear();
   for (std::size_t k = 0; k < chart.panels.size(); ++k) {
-    shorten_names(layout.y[k], 0.42 * kPictureWidth);
+    shorten_names(layout.y[k], sizes.name_part * sizes.width);
     tics = std::max(tics, widest(layout.y[k]));
-    layout.titles.push_back(broken(layout.y[k].title, heights[k] + kBetweenPanels));
+    layout.titles.push_back(broken(layout.y[k].title, heights[k] + sizes.between_panels));
     lines = std::max(lines, layout.titles.back().size());
   }
-  layout.title_x = kEdge + kTextLine / 2;
-  const double left = kEdge + static_cast<double>(lines) * kTextLine + tics + kTicGap + 0.8;
-  double right = kPictureWidth - kEdge - 1.5;
+  layout.title_x = sizes.edge + sizes.text_line / 2;
+  const double left = sizes.edge + static_cast<double>(lines) * sizes.text_line + tics + sizes.tic_gap + 0.8;
+  double right = sizes.width - sizes.edge - 1.5;
   if (chart.map) {
     const bool titled = !layout.colours.title.empty();
-    layout.colour_title_x = kPictureWidth - kEdge - kTextLine / 2;
-    layout.colour_box.width = kColourBox;
-    layout.colour_box.left =
-        kPictureWidth - kEdge - (titled ? kTextLine + 0.6 : 0) - widest(layout.colours) - kTicGap - kColourBox;
+    layout.colour_title_x = sizes.width - sizes.edge - sizes.text_line / 2;
+    layout.colour_box.width = sizes.colour_box;
+    layout.colour_box.left = sizes.width - sizes.edge - (titled ? sizes.text_line + 0.6 : 0) - widest(layout.colours) -
+                             sizes.tic_gap - sizes.colour_box;
     right = layout.colour_box.left - 2;
   }
   for (Area& area : layout.panels) {
@@ -196,11 +188,11 @@ std::vector<UprightWords> place_upright_words(const Chart& chart, const Scale& x
   std::vector<double> taken;  // right ends of the words in each row
   double before = 0;
   for (std::size_t k = 0; k < words.size(); ++k) {
-    const double at = words[k].from, width = width_of(words[k].mark->text, kSmallTextPoints);
+    const double at = words[k].from, width = width_of(words[k].mark->text, sizes.small_text);
     // To the right where no other line stands in the way, else to the left where that is free.
     const double next = k + 1 < words.size() ? words[k + 1].from : panel_width;
-    const double ends = at + kBesideMark + width, begins = at - kBesideMark - width;
-    const double from = ends > panel_width || (ends > next && begins >= before) ? begins : at + kBesideMark;
+    const double ends = at + sizes.beside_mark + width, begins = at - sizes.beside_mark - width;
+    const double from = ends > panel_width || (ends > next && begins >= before) ? begins : at + sizes.beside_mark;
     std::size_t& row = words[k].row;
     while (row < taken.size() && taken[row] > from) ++row;
     if (row == taken.size()) taken.push_back(0);
@@ -218,7 +210,7 @@ ChartAxis with_room_for_words(const ChartAxis& axis, const Scale& scale, const P
   std::size_t rows = 0;
   for (const UprightWords& words : layout.upright_words) rows = std::max(rows, words.row + 1);
   if (rows == 0 || scale.named || scale.falling || std::isfinite(axis.high)) return wider;
-  const double factor = 1 / (1 - std::min(kMostRoom, static_cast<double>(rows) * kMarkLine / height));
+  const double factor = 1 / (1 - std::min(kMostRoom, static_cast<double>(rows) * sizes.mark_line / height));
   wider.high = scale.logarithmic ? scale.low * std::pow(scale.high / scale.low, factor)
                                  : scale.low + factor * (scale.high - scale.low);
   return wider;
@@ -235,7 +227,7 @@ int tics_across(const Chart& chart, double width) {
 void keep_last_tic_inside(PictureLayout& layout) {
   for (const Scale::Tic& tic : layout.x.tics) {
     const double at = layout.panels.front().left + layout.x.part(tic.at) * layout.panels.front().width;
-    const double over = at + width_of(tic.text) / 2 - (kPictureWidth - 0.3);
+    const double over = at + width_of(tic.text) / 2 - (sizes.width - 0.3);
     if (over <= 0 || layout.upright_names || layout.colour_box.width > 0) continue;
     for (Area& area : layout.panels) area.width -= over;
   }
@@ -243,27 +235,27 @@ void keep_last_tic_inside(PictureLayout& layout) {
 
 /// Names of the abscissa stand on end where they would touch. Returns the height of its numbers or names.
 double place_names(PictureLayout& layout) {
-  if (!layout.x.named) return kTextLine;
+  if (!layout.x.named) return sizes.text_line;
   const double room = layout.panels.front().width / static_cast<double>(layout.x.tics.size());
   layout.upright_names = widest(layout.x) + 1.5 > room;
-  if (!layout.upright_names) return kTextLine;
-  shorten_names(layout.x, 30);
+  if (!layout.upright_names) return sizes.text_line;
+  shorten_names(layout.x, sizes.name);
   return widest(layout.x) + 0.5;
 }
 
 void place_upwards(PictureLayout& layout, const std::vector<double>& heights, double keys_height, double names_height) {
-  double bottom = kEdge + keys_height + (keys_height > 0 ? 1 : 0);
+  double bottom = sizes.edge + keys_height + (keys_height > 0 ? 1 : 0);
   if (!layout.x.title.empty()) {
-    layout.x_title_y = bottom + kTextLine / 2;
-    bottom += kTextLine;
+    layout.x_title_y = bottom + sizes.text_line / 2;
+    bottom += sizes.text_line;
   }
-  bottom += names_height + kTicGap;
+  bottom += names_height + sizes.tic_gap;
   for (std::size_t k = heights.size(); k-- > 0;) {
     layout.panels[k].bottom = bottom;
     layout.panels[k].height = heights[k];
-    bottom += heights[k] + kBetweenPanels;
+    bottom += heights[k] + sizes.between_panels;
   }
-  layout.height = bottom - kBetweenPanels + kEdge + 1;
+  layout.height = bottom - sizes.between_panels + sizes.edge + 1;
   layout.colour_box.bottom = layout.panels.back().bottom;
   layout.colour_box.height = layout.panels.front().top() - layout.colour_box.bottom;
 }

@@ -4,18 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "report/pictures/canvas.hpp"
 #include "report/pictures/scale.hpp"
+#include "report/pictures/svg.hpp"
 #include "tribofit/report/chart.hpp"
 
 namespace tribofit {
 
 /// Where everything of a picture lies. Lengths in mm, from the lower left corner.
-
-/// One column of a journal.
-inline constexpr double kPictureWidth = 85;
-/// Height of a line of text; distance between an axis and its numbers.
-inline constexpr double kTextLine = 3.4, kTicGap = 1.2;
 
 /// What an entry of the legend shows left of its name.
 struct Key {
@@ -25,10 +20,6 @@ struct Key {
   const Stretch* stretch = nullptr;
   double x = 0, y = 0;  ///< of the left end of its sample, half-way up
 };
-inline constexpr double kKeySample = 6, kKeyGap = 1;
-
-/// Words beside marks: height of a line of them, and how far they keep from their mark.
-inline constexpr double kMarkLine = 3, kBesideMark = 0.8;
 
 /// Words at an upright mark: where they begin, from the left edge of the panel, and in which row from the top.
 struct UprightWords {

@@ -1,57 +1,28 @@
 #include "tribofit/report/pictures.hpp"
 
 #include <set>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "output/whole_folder.hpp"
-#include "report/pictures/canvas.hpp"
+#include "report/pictures/convert.hpp"
 #include "report/pictures/draw.hpp"
-#include "report/pictures/layout.hpp"
 
 namespace tribofit {
 namespace {
 
-struct Picture {
-  std::string name;  ///< of its file, without the ending
-  const Chart* chart;
-};
-
-/// Charts of a report, each with a name of its own that is safe as one of a file.
-std::vector<Picture> pictures_of(const Report& report) {
-  std::vector<Picture> pictures;
-  std::set<std::string> taken;
-  for (const ReportSection& section : report.sections) {
-    for (const ReportItem& item : section.items) {
-      const Chart* chart = std::get_if<Chart>(&item);
-      if (chart == nullptr || chart->panels.empty()) continue;
-      std::string id;
-      for (const char c : chart->id) {
-        const bool safe = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-        id += safe ? c : '-';
-      }
-      if (id.empty()) id = "chart";
-      std::string name = id;
-      for (int k = 2; !taken.insert(name).second; ++k) name = id + "-" + std::to_string(k);
-      pictures.push_back({name, chart});
-    }
+/// The name of a chart's file, without the ending: safe, and its own.
+std::string free_name(const Chart& chart, std::set<std::string>& taken) {
+  std::string id;
+  for (const char c : chart.id) {
+    const bool safe = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    id += safe ? c : '-';
   }
-  return pictures;
-}
-
-std::string drawn(const Chart& chart, PictureFormat format) {
-  const PictureLayout layout = layout_of(chart);
-  const std::string title = one_line(chart.title);
-  const auto canvas = format == PictureFormat::svg ? make_svg(kPictureWidth, layout.height, title)
-                                                   : make_cairo(format, kPictureWidth, layout.height, title);
-  draw_chart(chart, layout, *canvas);
-  return canvas->finish();
-}
-
-std::string caption_of(const Picture& picture, PictureFormat format) {
-  const Chart& chart = *picture.chart;
-  return picture.name + "." + name_of(format) + "\n" + one_line(chart.title) + "\n" +
-         (chart.note.empty() ? "" : one_line(chart.note) + "\n");
+  if (id.empty()) id = "chart";
+  std::string name = id;
+  for (int k = 2; !taken.insert(name).second; ++k) name = id + "-" + std::to_string(k);
+  return name;
 }
 
 }  // namespace
@@ -61,26 +32,30 @@ std::string name_of(PictureFormat format) {
 }
 
 bool can_write_pictures(PictureFormat format) {
-  return format == PictureFormat::svg || has_cairo();
+  return format == PictureFormat::svg || can_convert();
 }
 
 PictureFiles::PictureFiles(const Report& report, const std::string& folder, PictureFormat format) {
-  const std::vector<Picture> pictures = pictures_of(report);
-  std::vector<std::string> files;
-  for (const Picture& picture : pictures) files.push_back(drawn(*picture.chart, format));
-  folder_ = std::make_unique<WholeFolder>(folder);  // no folder while drawing may still fail or be stopped
-  std::string captions = pictures.empty() ? "There is no chart to draw: " + one_line(report.lead) + "\n" : "";
-  for (std::size_t k = 0; k < pictures.size(); ++k) {
-    folder_->add(pictures[k].name + "." + name_of(format)).write(files[k]);
-    captions += (k > 0 ? "\n" : "") + caption_of(pictures[k], format);
+  std::set<std::string> taken;
+  std::vector<std::pair<std::string, std::string>> files;
+  std::string captions;
+  for (const ReportSection& section : report.sections) {
+    for (const ReportItem& item : section.items) {
+      const Chart* chart = std::get_if<Chart>(&item);
+      if (chart == nullptr || chart->panels.empty()) continue;
+      const std::string name = free_name(*chart, taken) + "." + name_of(format), title = one_line(chart->title);
+      const std::string svg = drawn(*chart);
+      files.emplace_back(name, format == PictureFormat::svg ? svg : converted(svg, format, title));
+      captions += (captions.empty() ? "" : "\n") + name + "\n" + title + "\n";
+      if (!chart->note.empty()) captions += one_line(chart->note) + "\n";
+    }
   }
+  if (files.empty()) captions = "There is no chart to draw: " + one_line(report.lead) + "\n";
+  folder_ = std::make_shared<WholeFolder>(folder);  // no folder while drawing may still fail or be stopped
+  for (const auto& [name, file] : files) folder_->add(name).write(file);
   folder_->add("figures.txt").write(captions);
   folder_->finish();
 }
-
-PictureFiles::~PictureFiles() = default;
-PictureFiles::PictureFiles(PictureFiles&&) noexcept = default;
-PictureFiles& PictureFiles::operator=(PictureFiles&&) noexcept = default;
 
 void PictureFiles::commit() {
   folder_->commit();

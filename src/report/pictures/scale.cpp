@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <string_view>
 
+#include "report/pictures/sizes.hpp"
+
 namespace tribofit {
 namespace {
 
@@ -139,8 +141,7 @@ Scale scale_of(const ChartAxis& axis, const Extent& extent, double margin, int m
   scale.title = axis.unit.empty() ? axis.quantity : axis.quantity + " [" + axis.unit + "]";
   set_range(scale, axis, extent, margin);
   if (scale.named) {
-    constexpr std::size_t kMostNames = 40;  // more cannot be read
-    const std::size_t every = (axis.names.size() + kMostNames - 1) / kMostNames;
+    const std::size_t every = (axis.names.size() + sizes.most_names - 1) / sizes.most_names;
     for (std::size_t k = 0; k < axis.names.size(); k += every)
       scale.tics.push_back({static_cast<double>(k), axis.names[k]});
   } else if (scale.logarithmic) {
