@@ -295,7 +295,6 @@ function makeChart(chart) {
   item.numbers = numbersOf(chart.id, () => headerOf(item.chart), () => rowsOf(item.chart));
   item.figure = make("figure", {}, make("figcaption", {}, item.title, item.note), plot, item.legend, item.tools, item.numbers);
   addTools(item, chart.title);
-  plot.addEventListener("keydown", (event) => onKey(event, item));
   chartItems.set(chart.id, item);
   comingNear.observe(plot);
   return item;
@@ -354,19 +353,18 @@ function showAll(item) {
   Plotly.relayout(item.plot, change);
 }
 
-function onKey(event, item) {
-  const actions = { "+": () => zoom(item, 0.5), "=": () => zoom(item, 0.5), "-": () => zoom(item, 2),
-    ArrowLeft: () => zoom(item, 1, -0.2), ArrowRight: () => zoom(item, 1, 0.2), 0: () => showAll(item) };
-  const action = event.ctrlKey || event.altKey || event.metaKey ? null : actions[event.key];
-  if (!action) return;
-  event.preventDefault();
-  action();
-}
-
+/** Buttons, and the keys that do the same on a chart in focus. */
 function addTools(item, title) {
-  const button = (text, what, action) =>
-    make("button", { type: "button", title: what, "aria-label": `${what}: ${title}`, onclick: action }, text);
-  item.tools.append(button("+", "Zoom in", () => zoom(item, 0.5)), button("\u2212", "Zoom out", () => zoom(item, 2)),
-    button("All", "Show all", () => showAll(item)), button("SVG", "Save as SVG", () => savePicture(item, "svg")),
-    button("PNG", "Save as PNG", () => savePicture(item, "png")));
+  const move = (part) => () => zoom(item, 1, part), closer = () => zoom(item, 0.5), wider = () => zoom(item, 2);
+  const keys = { "+": closer, "=": closer, "-": wider, ArrowLeft: move(-0.2), ArrowRight: move(0.2), 0: () => showAll(item) };
+  item.plot.addEventListener("keydown", (event) => {
+    const action = event.ctrlKey || event.altKey || event.metaKey ? null : keys[event.key];
+    if (!action) return;
+    event.preventDefault();
+    action();
+  });
+  for (const [text, what, action] of [["+", "Zoom in", closer], ["\u2212", "Zoom out", wider], ["All", "Show all", keys[0]],
+    ["SVG", "Save as SVG", () => savePicture(item, "svg")], ["PNG", "Save as PNG", () => savePicture(item, "png")]]) {
+    item.tools.append(make("button", { type: "button", title: what, "aria-label": `${what}: ${title}`, onclick: action }, text));
+  }
 }

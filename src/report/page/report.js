@@ -1,16 +1,8 @@
 // Puts a report together as the program describes it (include/tribofit/report/report.hpp).
 
-const textItems = {
-  plain: (text) => make("p", {}, prose(text)),
-  soft: (text) => make("p", { className: "soft" }, prose(text)),
-  warning: (text) => make("p", { className: "warning" }, prose(text)),
-  command: (text) => make("pre", {}, text),
-  heading: (text) => make("h3", {}, text),
-  item: (text) => make("p", { className: "item" }, prose(text)),
-};
-
 const itemMakers = {
-  text: (item) => textItems[item.kind](item.text),
+  text: ({ kind, text }) => (kind === "command" ? make("pre", {}, text) : kind === "heading" ? make("h3", {}, text)
+    : make("p", { className: kind }, prose(text))),
   table: (item) => {
     const whole = table(item.folded ? "" : item.caption, item.header, item.rows, item.numeric || []);
     if (!item.folded) return whole;

@@ -10,8 +10,7 @@ namespace {
 Extent extent_of_abscissa(const Chart& chart) {
   Extent extent(chart.x.logarithmic);
   for (const ChartLine& line : chart.lines) {
-    if (!line.shown) continue;
-    for (std::size_t k = 0; k < line.x.size(); ++k) {
+    for (std::size_t k = 0; line.shown && k < line.x.size(); ++k) {
       const bool there =
           (k < line.y.size() && std::isfinite(line.y[k])) || (k < line.low.size() && std::isfinite(line.low[k]));
       if (there) extent.add(line.x[k]);
@@ -115,15 +114,11 @@ TitleLines broken(const std::string& title, double length) {
   if (title.empty()) return {};
   const std::string line = one_line(title);
   if (width_of(line) <= length) return {line};
-  std::size_t best = std::string::npos;
-  for (std::size_t at = line.find(' '); at != std::string::npos; at = line.find(' ', at + 1)) {
-    const auto off = [&](std::size_t k) {
-      return std::abs(2 * static_cast<double>(k) - static_cast<double>(line.size()));
-    };
-    if (best == std::string::npos || off(at) < off(best)) best = at;
-  }
-  if (best == std::string::npos) return {line};
-  return {line.substr(0, best), line.substr(best + 1)};
+  constexpr std::size_t kNone = std::string::npos;
+  const std::size_t before = line.rfind(' ', line.size() / 2), after = line.find(' ', line.size() / 2);
+  const std::size_t at = before == kNone || (after != kNone && before + after < line.size()) ? after : before;
+  if (at == kNone) return {line};
+  return {line.substr(0, at), line.substr(at + 1)};
 }
 
 /// Heights of the panels: what is left of the chart's height beside axis and gaps, by their parts.
@@ -211,8 +206,8 @@ ChartAxis with_room_for_words(const ChartAxis& axis, const Scale& scale, const P
   for (const UprightWords& words : layout.upright_words) rows = std::max(rows, words.row + 1);
   if (rows == 0 || scale.named || scale.falling || std::isfinite(axis.high)) return wider;
   const double factor = 1 / (1 - std::min(kMostRoom, static_cast<double>(rows) * sizes.mark_line / height));
-  wider.high = scale.logarithmic ? scale.low * std::pow(scale.high / scale.low, factor)
-                                 : scale.low + factor * (scale.high - scale.low);
+  const double top = scale.low + factor * (scale.high - scale.low);
+  wider.high = scale.logarithmic ? std::pow(10, top) : top;
   return wider;
 }
 

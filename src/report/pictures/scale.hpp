@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -7,9 +9,15 @@
 
 namespace tribofit {
 
+/// Where a value stands on an axis: its decimal logarithm on a logarithmic one, which has no place for what is not
+/// positive (NaN).
+inline double along(double value, bool logarithmic) {
+  return !logarithmic ? value : value > 0 ? std::log10(value) : std::numeric_limits<double>::quiet_NaN();
+}
+
 /// An axis with everything decided: its range, where its tics are and what they say.
 struct Scale {
-  double low = 0, high = 1;  ///< low < high also where it falls
+  double low = 0, high = 1;  ///< along() the axis; low < high also where it falls
   bool logarithmic = false, falling = false, named = false;
   struct Tic {
     double at;
@@ -19,21 +27,24 @@ struct Scale {
   std::string title;  ///< markup: quantity and unit
 
   /// Part of the way along the axis, 0 to 1 from left to right or from bottom to top; NaN where it has none.
-  double part(double value) const;
+  double part(double value) const {
+    const double rising = (along(value, logarithmic) - low) / (high - low);
+    return falling ? 1 - rising : rising;
+  }
 };
 
-/// Least and largest of what is added; what is not finite, and on a logarithmic axis not positive, is left out.
-class Extent {
- public:
-  explicit Extent(bool logarithmic) : logarithmic_(logarithmic) {}
-  void add(double value);
-  bool empty() const { return !(low_ <= high_); }
-  double low() const { return low_; }
-  double high() const { return high_; }
+/// Least and largest of what is added, along() an axis; what has no place on it is left out.
+struct Extent {
+  bool logarithmic;
+  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
 
- private:
-  bool logarithmic_;
-  double low_ = std::numeric_limits<double>::infinity(), high_ = -std::numeric_limits<double>::infinity();
+  explicit Extent(bool on_logarithmic_axis) : logarithmic(on_logarithmic_axis) {}
+  void add(double value) {
+    const double place = along(value, logarithmic);
+    if (!std::isfinite(place)) return;
+    low = std::min(low, place);
+    high = std::max(high, place);
+  }
 };
 
 /// The scale of an axis that shows this extent, with `margin` (a part of it) beside it where the data set the range,
