@@ -148,6 +148,7 @@ TEST(PictureText, IsOneLineOfValidCharacters) {
   EXPECT_EQ(one_line("\xED\xA0\x80"), bad + bad + bad);
   EXPECT_EQ(one_line("\xF4\x90\x80\x80"), bad + bad + bad + bad);
   EXPECT_EQ(one_line("v\xCF"), "v" + bad);
+  EXPECT_EQ(one_line("\xEF\xBF\xBE"), bad);  // valid UTF-8, but in no XML
   EXPECT_EQ(one_line("\xCE\xBC \xE2\x82\xAC \xF0\x9F\x98\x80"), "\xCE\xBC \xE2\x82\xAC \xF0\x9F\x98\x80");
 }
 

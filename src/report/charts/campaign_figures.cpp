@@ -218,8 +218,7 @@ void add_run(const FiguresOfRun& run, const std::string& conditions, const std::
 DrawnCampaign::DrawnCampaign(const ResultReader& all_results, std::span<const RunResult> all_runs, const Pooled& pooled,
                              const std::optional<ComparisonReport>& comparison)
     : results(all_results), runs(all_runs), groups(pooled.groups), earlier(comparison ? &comparison->values : nullptr) {
-  constexpr std::size_t kShownGroups = 6;
-  shown = OverConditions(groups).some(kShownGroups);
+  shown = OverConditions(groups).some(drawing.shown_groups);
 }
 
 std::string DrawnCampaign::earlier_name() const {
@@ -271,7 +270,6 @@ ReportSection law_figures(const DrawnCampaign& campaign) {
 }
 
 Chart scatter_chart(const DrawnCampaign& campaign, const std::string& law) {
-  constexpr std::size_t kMostPoints = 300;
   Chart chart{
       .id = "scatter-" + law,
       .title = "The parameters of each run, " + law + " law",
@@ -285,7 +283,7 @@ Chart scatter_chart(const DrawnCampaign& campaign, const std::string& law) {
       ChartLine& line = chart.line(conditions_text(campaign.groups[campaign.shown[k]]), marked(k, false), p);
       line.bars = true;
       const std::vector<std::size_t>& runs = campaign.groups[campaign.shown[k]].runs;
-      for (const std::size_t i : thinned(runs.size(), kMostPoints)) {
+      for (const std::size_t i : thinned(runs.size(), drawing.runs)) {
         const RunResult& run = campaign.runs[runs[i]];
         const ResultFit* fit = run.fit(law, to_string(Protocol::joint));
         if (fit == nullptr || fit->parameters.size() <= p || !fit->parameters[p].effect.empty()) continue;

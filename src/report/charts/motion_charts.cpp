@@ -51,9 +51,8 @@ void add_over_time(const DrawnMotion& m, const std::vector<MotionChannel>& chann
 }
 
 void shade_sticks(const DrawnMotion& m, Chart& chart) {
-  constexpr std::size_t kMost = 60;
   for (const FlagRun& run : runs_of(m.sticks)) {
-    if (!run.set || chart.stretches.size() >= kMost) continue;
+    if (!run.set || chart.stretches.size() >= drawing.shown_sticks) continue;
     chart.stretches.push_back({m.time[run.begin], m.time[std::min(run.end, m.time.size() - 1)], Shade::stick});
   }
 }
@@ -63,7 +62,7 @@ ChartMark disc_mark(double disc_velocity, std::size_t panel) {
 }
 
 Animation::Block animated(const DrawnMotion& m) {
-  const std::vector<std::size_t> kept = drawn_samples({m.displacement, m.friction}, m.sticks, kBins);
+  const std::vector<std::size_t> kept = drawn_samples({m.displacement, m.friction}, m.sticks, drawing.motion);
   Animation::Block block{
       m.name, picked(m.time, kept, 1), picked(m.displacement, kept, kMillimetre), picked(m.friction, kept, 1), {}};
   for (double& t : block.time) t -= m.time.front();

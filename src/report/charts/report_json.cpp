@@ -12,33 +12,19 @@
 namespace tribofit {
 namespace {
 
-constexpr int kDigits = 5;  // of what is drawn: finer than any screen, and a page stays small
-
 constexpr std::array<std::string_view, 6> kTexts = {"plain", "soft", "warning", "command", "heading", "item"};
-
-std::string rgba(const Paint& paint) {
-  const auto part = [&](std::size_t which) { return channel_of(paint.colour, which); };
-  return fmt::format("rgba({},{},{},{})", part(0), part(1), part(2), paint.opacity);
-}
 
 /// Everything about styles that the page must know, under the names that lines, bars and stretches use.
 Json styles_json() {
   Json json;
   for (std::size_t k = 0; k < kColours.size(); ++k) {
     json["colours"][kColours[k].name] = kColours[k].rgb;
-    json["pale"][kColours[k].name] = rgba(pale(static_cast<Colour>(k)));
+    json["pale"][kColours[k].name] = pale(static_cast<Colour>(k)).opacity;
   }
-  for (const DashStyle& dash : kDashes) {
-    std::string lengths;
-    for (const double length : dash.lengths) {
-      if (length > 0) lengths += fmt::format("{}{}px", lengths.empty() ? "" : ",", length);
-    }
-    json["dashes"][dash.name] = lengths.empty() ? "solid" : lengths;
-  }
+  for (const DashStyle& dash : kDashes) json["dashes"][dash.name] = dash.lengths;
   for (const SymbolStyle& symbol : kSymbols) json["symbols"][symbol.name] = symbol.path;
-  for (const ShadeStyle& shade : kShades) {
-    json["shades"][shade.name] = {{"meaning", shade.meaning}, {"fill", rgba(shade.paint)}};
-  }
+  for (const auto& [name, meaning, paint] : kShades)
+    json["shades"][name] = object("meaning", meaning, "colour", paint.colour, "opacity", paint.opacity);
   json["most_symbols"] = kMostSymbols;
   json["heat"] = kHeatColours;
   json["diverging"] = kDivergingColours;
@@ -74,8 +60,8 @@ Json line_json(const ChartLine& line, int digits_of_x) {
   Json json = object_with_room(10, "name", line.name, "x", rounded_list(line.x, digits_of_x), "colour",
                                style_of(stroke.colour, kColours).name, "dash", style_of(stroke.dash, kDashes).name,
                                "width", stroke.width);
-  add_given(json, "y", rounded_list(line.y, kDigits), "low", rounded_list(line.low, kDigits), "high",
-            rounded_list(line.high, kDigits), "bars", line.bars, "panel", line.panel);
+  add_given(json, "y", rounded_list(line.y, drawing.digits), "low", rounded_list(line.low, drawing.digits), "high",
+            rounded_list(line.high, drawing.digits), "bars", line.bars, "panel", line.panel);
   if (stroke.symbol != Symbol::none)
     add_members(json, "symbol", style_of(stroke.symbol, kSymbols).name, "size", stroke.size);
   if (!stroke.joined) json["joined"] = false;
@@ -86,7 +72,7 @@ Json line_json(const ChartLine& line, int digits_of_x) {
 
 Json map_json(const HeatMap& map, const ChartAxis& x) {
   const auto row = [](const std::vector<double>& values) { return rounded_list(values, 4); };
-  Json json = object_with_room(4, "x", rounded_list(map.x, x.digits), "y", rounded_list(map.y, kDigits), "z",
+  Json json = object_with_room(4, "x", rounded_list(map.x, x.digits), "y", rounded_list(map.y, drawing.digits), "z",
                                list_of(map.z, row), "quantity", map.quantity, "unit", map.unit);
   add_given(json, "low", map.low, "high", map.high, "diverging", map.diverging, "contours", map.contours);
   return json;
@@ -99,12 +85,12 @@ void add_annotations(const Chart& chart, Json& json) {
                   style_of(s.shade, kShades).name);
   };
   const auto mark = [](const ChartMark& m) {
-    Json one = object("at", rounded(m.at, kTimeDigits), "dash", style_of(m.dash, kDashes).name);
+    Json one = object("at", rounded(m.at, drawing.time_digits), "dash", style_of(m.dash, kDashes).name);
     add_given(one, "upright", m.upright, "text", m.text, "panel", m.panel);
     return one;
   };
   const auto label = [&](const ChartLabel& l) {
-    Json one = object("x", rounded(l.x, digits), "y", rounded(l.y, kDigits), "text", l.text);
+    Json one = object("x", rounded(l.x, digits), "y", rounded(l.y, drawing.digits), "text", l.text);
     add_given(one, "panel", l.panel);
     return one;
   };
@@ -138,18 +124,19 @@ Json item_json(const ReportTable& table) {
 
 Json item_json(const Animation& animation) {
   const auto block = [](const Animation::Block& b) {
-    return object("name", b.name, "time", rounded_list(b.time, kTimeDigits), "displacement",
-                  rounded_list(b.displacement, kDigits), "friction", rounded_list(b.friction, kDigits), "sticks",
-                  list_of(b.sticks, [](bool stick) { return Json(stick ? 1 : 0); }));
+    return object("name", b.name, "time", rounded_list(b.time, drawing.time_digits), "displacement",
+                  rounded_list(b.displacement, drawing.digits), "friction", rounded_list(b.friction, drawing.digits),
+                  "sticks", list_of(b.sticks, [](bool stick) { return Json(stick ? 1 : 0); }));
   };
   return object("type", "animation", "id", animation.id, "title", animation.title, "note", animation.note,
-                "disc_velocity", rounded(animation.disc_velocity, kDigits), "blocks", list_of(animation.blocks, block));
+                "disc_velocity", rounded(animation.disc_velocity, drawing.digits), "blocks",
+                list_of(animation.blocks, block));
 }
 
 Json item_json(const Chart& chart) {
   const auto panel = [](const ChartPanel& p) { return object("axis", axis_json(p.axis), "part", p.part); };
   const auto bars = [](const ChartBars& b) {
-    return object("name", b.name, "values", rounded_list(b.values, kDigits), "colour",
+    return object("name", b.name, "values", rounded_list(b.values, drawing.digits), "colour",
                   style_of(b.colour, kColours).name, "hatched", b.hatched);
   };
   const auto line = [&](const ChartLine& l) { return line_json(l, chart.x.digits); };

@@ -6,9 +6,9 @@ const darkScreen = matchMedia("(prefers-color-scheme: dark)");
 
 const onDark = {
   colours: { black: "#ececec", blue: "#62b5ea", red: "#ff9a57", green: "#3fd0a6", purple: "#e29ccd", grey: "#b0b0b0" },
-  shades: { stick: "rgba(255,255,255,0.10)", slip: "rgba(230,159,0,0.22)", beyond: "rgba(255,255,255,0.15)",
-    "left-out": "rgba(226,156,205,0.28)", range: "rgba(226,156,205,0.4)" },
-  grid: "#3a3a3a", axis: "#bdbdbd", text: "#ececec", disc: "#4a4a4a", sticking: "#2f5871", slipping: "#7a5a1c",
+  shades: { stick: ["#ffffff", 0.1], slip: ["#e69f00", 0.22], beyond: ["#ffffff", 0.15], "left-out": ["#e29ccd", 0.28],
+    range: ["#e29ccd", 0.4] },
+  pale: 0.25, grid: "#3a3a3a", axis: "#bdbdbd", text: "#ececec", disc: "#4a4a4a", sticking: "#2f5871", slipping: "#7a5a1c",
   paper: "#1a1a1a", halo: "rgba(26,26,26,0.75)",
 };
 
@@ -19,11 +19,13 @@ function rgba(colour, opacity) {
 
 /** The styles of a report as the screen wants them. */
 function themed(given, dark) {
-  if (!dark) return { ...given, dark, paper: "#ffffff", halo: "rgba(255,255,255,0.8)" };
-  const pale = Object.fromEntries(Object.entries(onDark.colours).map(([name, colour]) => [name, rgba(colour, 0.25)]));
-  const shades = Object.fromEntries(Object.entries(given.shades).map(([name, shade]) =>
-    [name, { ...shade, fill: onDark.shades[name] || shade.fill }]));
-  return { ...given, ...onDark, dark, pale, shades };
+  const each = (members, make) => Object.fromEntries(Object.entries(members).map(([name, value]) => [name, make(value, name)]));
+  const base = { ...given, paper: "#ffffff", halo: "rgba(255,255,255,0.8)", ...(dark ? onDark : {}), dark };
+  return { ...base,
+    dashes: each(given.dashes, (lengths) => lengths.filter((length) => length > 0).map((length) => `${length}px`).join() || "solid"),
+    pale: each(base.colours, (colour, name) => rgba(colour, dark ? onDark.pale : given.pale[name])),
+    shades: each(given.shades, ({ meaning, colour, opacity }, name) =>
+      ({ meaning, fill: rgba(...(dark ? onDark.shades[name] : [colour, opacity])) })) };
 }
 
 let givenStyles = null;

@@ -46,6 +46,9 @@ std::string one_line(std::string_view text) {
     const bool c1 = byte == 0xC2 && k + 1 < out.size() && static_cast<unsigned char>(out[k + 1]) < 0xA0;
     if (c1) out.erase(k, 1);  // a control character of two bytes
     if (c1 || byte < 0x20 || byte == 0x7F) out[k] = ' ';
+    // U+FFFE and U+FFFF are in no XML.
+    if (byte == 0xBF && k > 0 && k + 1 < out.size() && out[k - 1] == '\xEF' && out[k + 1] >= '\xBE')
+      out[k + 1] = '\xBD';
   }
   return out;
 }
