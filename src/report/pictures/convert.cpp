@@ -1,4 +1,4 @@
-#include "report/pictures/convert.hpp"
+#include "report/pictures/draw.hpp"
 
 #include <cairo-pdf.h>
 #include <librsvg/rsvg.h>

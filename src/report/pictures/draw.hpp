@@ -6,11 +6,16 @@
 #include "report/pictures/layout.hpp"
 #include "report/pictures/svg.hpp"
 #include "tribofit/report/chart.hpp"
+#include "tribofit/report/pictures.hpp"
 
 namespace tribofit {
 
 /// A chart as SVG.
 std::string drawn(const Chart& chart);
+
+/// An SVG as PDF or PNG, drawn by librsvg; throws InputError where it cannot be drawn, and in a build without it.
+std::string converted(const std::string& svg, PictureFormat format, const std::string& title);
+bool can_convert();
 
 /// A panel as the parts of drawn() see it.
 struct PanelFrame {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "output/whole_folder.hpp"
-#include "report/pictures/convert.hpp"
 #include "report/pictures/draw.hpp"
 
 namespace tribofit {

@@ -1,4 +1,4 @@
-#include "report/pictures/convert.hpp"
+#include "report/pictures/draw.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {
