@@ -218,7 +218,7 @@ void add_run(const FiguresOfRun& run, const std::string& conditions, const std::
 DrawnCampaign::DrawnCampaign(const ResultReader& all_results, std::span<const RunResult> all_runs, const Pooled& pooled,
                              const std::optional<ComparisonReport>& comparison)
     : results(all_results), runs(all_runs), groups(pooled.groups), earlier(comparison ? &comparison->values : nullptr) {
-  shown = OverConditions(groups).some(drawing.shown_groups);
+  shown = OverConditions(groups).some(chart_detail.shown_groups);
 }
 
 std::string DrawnCampaign::earlier_name() const {
@@ -283,7 +283,7 @@ Chart scatter_chart(const DrawnCampaign& campaign, const std::string& law) {
       ChartLine& line = chart.line(conditions_text(campaign.groups[campaign.shown[k]]), marked(k, false), p);
       line.bars = true;
       const std::vector<std::size_t>& runs = campaign.groups[campaign.shown[k]].runs;
-      for (const std::size_t i : thinned(runs.size(), drawing.runs)) {
+      for (const std::size_t i : thinned(runs.size(), chart_detail.runs)) {
         const RunResult& run = campaign.runs[runs[i]];
         const ResultFit* fit = run.fit(law, to_string(Protocol::joint));
         if (fit == nullptr || fit->parameters.size() <= p || !fit->parameters[p].effect.empty()) continue;

@@ -69,7 +69,7 @@ std::vector<std::vector<BranchBand>> bands_of(const DrawnTrace& d) {
                                 k == 0        ? d.trace.motion.friction
                                 : k <= models ? residuals_of(d, k - 1)
                                               : d.predictions[k - 1 - models],
-                                drawing.speed_bins);
+                                chart_detail.speed_bins);
   });
   return bands;
 }
@@ -81,7 +81,7 @@ void add_break_aways(const DrawnTrace& d, Chart& chart) {
       levels.push_back(c.break_away_friction);
   }
   ChartLine& line = chart.line("break-away of each cycle", dots(Colour::grey, Symbol::diamond));
-  for (const std::size_t k : drawn_samples(levels, d.bins(drawing.break_aways))) line.add(0, levels[k]);
+  for (const std::size_t k : drawn_samples(levels, d.bins(chart_detail.break_aways))) line.add(0, levels[k]);
 }
 
 /// The law of a fit with its band.
@@ -102,7 +102,7 @@ void add_curves(const DrawnTrace& d, Chart& chart) {
     const bool looped = is_beside && has_loop(*fit);
     Stroke stroke = is_beside ? model_stroke(k) : kPublished;
     if (looped) stroke.dash = Dash::dotted;
-    add_curve(*fit, curve_of(*fit, drawing.curve_points, d.threads), stroke, is_beside && !looped, chart,
+    add_curve(*fit, curve_of(*fit, chart_detail.curve_points, d.threads), stroke, is_beside && !looped, chart,
               looped ? ", steady sliding" : "");
   }
 }
@@ -234,15 +234,15 @@ Chart points_chart(const DrawnTrace& d) {
   const Motion& motion = d.trace.motion;
   double slowest = std::numeric_limits<double>::infinity();
   for (const double v : motion.relative_velocity) slowest = std::min(slowest, std::abs(v) / kMillimetre);
-  const bool logarithmic = slowest > 0 && d.fastest > drawing.decades * slowest;
+  const bool logarithmic = slowest > 0 && d.fastest > chart_detail.decades * slowest;
   Chart chart = friction_chart(d,
                                "Points as measured, with their standard errors where they are stated. Bands of the "
                                "laws: 95 % interval. Below: what the best law leaves, in units of the noise floor.",
                                logarithmic);
   add_points(d, motion.friction, motion.friction_std_error, 0, chart);
   std::vector<double> speeds;
-  for (std::size_t k = 0; k < drawing.curve_points; ++k) {
-    const double part = static_cast<double>(k) / (drawing.curve_points - 1.0);
+  for (std::size_t k = 0; k < chart_detail.curve_points; ++k) {
+    const double part = static_cast<double>(k) / (chart_detail.curve_points - 1.0);
     speeds.push_back(kMillimetre * (logarithmic ? slowest * std::pow(d.fastest / slowest, part) : d.fastest * part));
   }
   for (std::size_t k = 0; k < d.curves.size(); ++k) {
@@ -261,7 +261,8 @@ std::vector<Chart> error_charts(const DrawnTrace& d) {
       error_chart(d, "error-speed", "Relative error over speed", {"relative velocity |v_{r}|", "mm/s"}),
       error_chart(d, "error-time", "Relative error over time", {"time", "s"})};
   for (std::size_t k = 0; k < d.models.size(); ++k) {
-    ExtremesInBins speed(0, d.fastest, drawing.error_bins), time(m.time.front(), m.time.back(), drawing.time_bins);
+    ExtremesInBins speed(0, d.fastest, chart_detail.error_bins),
+        time(m.time.front(), m.time.back(), chart_detail.time_bins);
     for (const SlipBranch& piece : d.pieces) {
       for (std::size_t i = piece.samples.begin; i < piece.samples.end; ++i) {
         const double error = std::abs((m.friction[i] - d.predictions[k][i]) / m.friction[i]);

@@ -8,8 +8,6 @@
 namespace tribofit {
 namespace {
 
-constexpr std::size_t kBins = 400;  // in which the extremes of a motion are drawn
-
 std::vector<double> picked(std::span<const double> values, std::span<const std::size_t> samples, double unit) {
   std::vector<double> out;
   out.reserve(samples.size());
@@ -29,7 +27,7 @@ Chart portrait_plane(std::string id, std::string title, double disc_velocity) {
 }
 
 void add_loop(const DrawnMotion& m, const Stroke& stroke, Chart& chart, bool closed) {
-  std::vector<std::size_t> kept = drawn_samples({m.displacement, m.velocity}, m.sticks, kBins);
+  std::vector<std::size_t> kept = drawn_samples({m.displacement, m.velocity}, m.sticks, chart_detail.motion);
   if (closed) kept.push_back(kept.front());
   chart.lines.push_back(
       {m.name, picked(m.displacement, kept, kMillimetre), picked(m.velocity, kept, kMillimetre), stroke});
@@ -41,7 +39,8 @@ void add_over_time(const DrawnMotion& m, const std::vector<MotionChannel>& chann
     chart.panels.clear();
     for (const MotionChannel& channel : channels) chart.panels.push_back({channel.axis});
   }
-  const std::vector<std::size_t> kept = drawn_samples({m.displacement, m.velocity, m.friction}, m.sticks, kBins);
+  const std::vector<std::size_t> kept =
+      drawn_samples({m.displacement, m.velocity, m.friction}, m.sticks, chart_detail.motion);
   const std::vector<double> time = picked(m.time, kept, 1);
   for (std::size_t panel = 0; panel < channels.size(); ++panel) {
     const MotionChannel& channel = channels[panel];
@@ -52,7 +51,7 @@ void add_over_time(const DrawnMotion& m, const std::vector<MotionChannel>& chann
 
 void shade_sticks(const DrawnMotion& m, Chart& chart) {
   for (const FlagRun& run : runs_of(m.sticks)) {
-    if (!run.set || chart.stretches.size() >= drawing.shown_sticks) continue;
+    if (!run.set || chart.stretches.size() >= chart_detail.shown_sticks) continue;
     chart.stretches.push_back({m.time[run.begin], m.time[std::min(run.end, m.time.size() - 1)], Shade::stick});
   }
 }
@@ -62,7 +61,7 @@ ChartMark disc_mark(double disc_velocity, std::size_t panel) {
 }
 
 Animation::Block animated(const DrawnMotion& m) {
-  const std::vector<std::size_t> kept = drawn_samples({m.displacement, m.friction}, m.sticks, drawing.motion);
+  const std::vector<std::size_t> kept = drawn_samples({m.displacement, m.friction}, m.sticks, chart_detail.motion);
   Animation::Block block{
       m.name, picked(m.time, kept, 1), picked(m.displacement, kept, kMillimetre), picked(m.friction, kept, 1), {}};
   for (double& t : block.time) t -= m.time.front();

@@ -89,7 +89,7 @@ std::vector<Chart> rate_state_charts(const RateStateAnalysis& analysis) {
   if (!analysis.fitted() || analysis.curves.empty()) return charts;
   charts.push_back(whole_chart(analysis));
   for (const RateStateCurve& curve : analysis.curves) {
-    if (charts.size() <= drawing.shown_steps) charts.push_back(zoom_chart_of(analysis, curve));
+    if (charts.size() <= chart_detail.shown_steps) charts.push_back(zoom_chart_of(analysis, curve));
   }
   if (analysis.healing && analysis.healing->holds.size() > 1)
     charts.push_back(healing_chart(*analysis.healing, unit_of_friction(analysis)));

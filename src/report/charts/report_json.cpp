@@ -60,8 +60,8 @@ Json line_json(const ChartLine& line, int digits_of_x) {
   Json json = object_with_room(10, "name", line.name, "x", rounded_list(line.x, digits_of_x), "colour",
                                style_of(stroke.colour, kColours).name, "dash", style_of(stroke.dash, kDashes).name,
                                "width", stroke.width);
-  add_given(json, "y", rounded_list(line.y, drawing.digits), "low", rounded_list(line.low, drawing.digits), "high",
-            rounded_list(line.high, drawing.digits), "bars", line.bars, "panel", line.panel);
+  add_given(json, "y", rounded_list(line.y, chart_detail.digits), "low", rounded_list(line.low, chart_detail.digits),
+            "high", rounded_list(line.high, chart_detail.digits), "bars", line.bars, "panel", line.panel);
   if (stroke.symbol != Symbol::none)
     add_members(json, "symbol", style_of(stroke.symbol, kSymbols).name, "size", stroke.size);
   if (!stroke.joined) json["joined"] = false;
@@ -72,8 +72,8 @@ Json line_json(const ChartLine& line, int digits_of_x) {
 
 Json map_json(const HeatMap& map, const ChartAxis& x) {
   const auto row = [](const std::vector<double>& values) { return rounded_list(values, 4); };
-  Json json = object_with_room(4, "x", rounded_list(map.x, x.digits), "y", rounded_list(map.y, drawing.digits), "z",
-                               list_of(map.z, row), "quantity", map.quantity, "unit", map.unit);
+  Json json = object_with_room(4, "x", rounded_list(map.x, x.digits), "y", rounded_list(map.y, chart_detail.digits),
+                               "z", list_of(map.z, row), "quantity", map.quantity, "unit", map.unit);
   add_given(json, "low", map.low, "high", map.high, "diverging", map.diverging, "contours", map.contours);
   return json;
 }
@@ -85,12 +85,12 @@ void add_annotations(const Chart& chart, Json& json) {
                   style_of(s.shade, kShades).name);
   };
   const auto mark = [](const ChartMark& m) {
-    Json one = object("at", rounded(m.at, drawing.time_digits), "dash", style_of(m.dash, kDashes).name);
+    Json one = object("at", rounded(m.at, chart_detail.time_digits), "dash", style_of(m.dash, kDashes).name);
     add_given(one, "upright", m.upright, "text", m.text, "panel", m.panel);
     return one;
   };
   const auto label = [&](const ChartLabel& l) {
-    Json one = object("x", rounded(l.x, digits), "y", rounded(l.y, drawing.digits), "text", l.text);
+    Json one = object("x", rounded(l.x, digits), "y", rounded(l.y, chart_detail.digits), "text", l.text);
     add_given(one, "panel", l.panel);
     return one;
   };
@@ -124,19 +124,20 @@ Json item_json(const ReportTable& table) {
 
 Json item_json(const Animation& animation) {
   const auto block = [](const Animation::Block& b) {
-    return object("name", b.name, "time", rounded_list(b.time, drawing.time_digits), "displacement",
-                  rounded_list(b.displacement, drawing.digits), "friction", rounded_list(b.friction, drawing.digits),
-                  "sticks", list_of(b.sticks, [](bool stick) { return Json(stick ? 1 : 0); }));
+    return object("name", b.name, "time", rounded_list(b.time, chart_detail.time_digits), "displacement",
+                  rounded_list(b.displacement, chart_detail.digits), "friction",
+                  rounded_list(b.friction, chart_detail.digits), "sticks",
+                  list_of(b.sticks, [](bool stick) { return Json(stick ? 1 : 0); }));
   };
   return object("type", "animation", "id", animation.id, "title", animation.title, "note", animation.note,
-                "disc_velocity", rounded(animation.disc_velocity, drawing.digits), "blocks",
+                "disc_velocity", rounded(animation.disc_velocity, chart_detail.digits), "blocks",
                 list_of(animation.blocks, block));
 }
 
 Json item_json(const Chart& chart) {
   const auto panel = [](const ChartPanel& p) { return object("axis", axis_json(p.axis), "part", p.part); };
   const auto bars = [](const ChartBars& b) {
-    return object("name", b.name, "values", rounded_list(b.values, drawing.digits), "colour",
+    return object("name", b.name, "values", rounded_list(b.values, chart_detail.digits), "colour",
                   style_of(b.colour, kColours).name, "hatched", b.hatched);
   };
   const auto line = [&](const ChartLine& l) { return line_json(l, chart.x.digits); };

@@ -109,7 +109,7 @@ constexpr const auto& style_of(Enum value, const Styles& styles) {
 /// How much of a record charts show: stretches into which a series is cut (drawn_samples()), bins of what is taken
 /// together, and things that are shown at most.
 struct ChartDetail {
-  std::size_t record = 1200, cycles = 1200, zoom = 300, measures = 200, spectrum = 800, motion = 250, least = 50;
+  std::size_t record = 1200, cycles = 1200, zoom = 300, measures = 200, spectrum = 800, motion = 400, least = 50;
   std::size_t speed_bins = 48, error_bins = 80, time_bins = 400;
   std::size_t curve_points = 161, break_aways = 200, runs = 300;
   std::size_t shown_cycles = 3, shown_groups = 6, shown_steps = 8, shown_sticks = 60;
@@ -119,7 +119,7 @@ struct ChartDetail {
   int digits = 5;         ///< of what is drawn: finer than any screen, and a page stays small
   int time_digits = 9;    ///< of times: 20 us are distinguishable after an hour
 };
-inline constexpr ChartDetail drawing;
+inline constexpr ChartDetail chart_detail;
 
 inline constexpr Stroke kMeasured = {Colour::blue, Dash::solid, Symbol::none, 1.1};
 inline constexpr Stroke kDisc = {Colour::red, Dash::dashed, Symbol::none, 1.5};

@@ -47,7 +47,7 @@ Chart window_chart(const DrawnTrace& d, const Window& w, bool with_models) {
     if (of_block) disc.push_back(motion.disc_velocity_at(i) / kMillimetre);
     velocity.push_back((of_block ? motion.disc_velocity_at(i) - v_r : v_r) / kMillimetre);
   }
-  Chart chart{.x = {.quantity = "time", .unit = "s", .digits = drawing.time_digits},
+  Chart chart{.x = {.quantity = "time", .unit = "s", .digits = chart_detail.time_digits},
               .panels = {{friction_axis(motion), 1.3}, {{of_block ? "v_{b}" : "v_{r}", "mm/s"}}}};
   add_drawn(d, w, "measured", in(motion.friction), kMeasured, 0, chart);
   for (std::size_t k = 0; with_models && k < d.models.size(); ++k) {
@@ -86,11 +86,11 @@ Chart zoom_chart(const DrawnTrace& d, double at, double half, const char* id, co
   };
   const std::size_t begin = index_at(at - half), end = index_at(at + half);
   if (end < begin + 2) return {};
-  Chart chart = window_chart(d, {begin, end, d.bins(drawing.zoom), at, kMillisecond}, true);
+  Chart chart = window_chart(d, {begin, end, d.bins(chart_detail.zoom), at, kMillisecond}, true);
   chart.id = d.id + "-" + id;
   chart.title = title;
   chart.note = fmt::format("±{} ms about {} s.", significant(half / kMillisecond, 2), significant(at, 6));
-  chart.x = {.quantity = "time from the event", .unit = "ms", .digits = drawing.time_digits};
+  chart.x = {.quantity = "time from the event", .unit = "ms", .digits = chart_detail.time_digits};
   chart.marks.push_back({0, true, Dash::dotted, ""});
   chart.height = 400;
   chart.half = true;
@@ -104,10 +104,10 @@ struct ShownCycles {
 
 ShownCycles shown_cycles(const DrawnTrace& d) {
   const std::vector<Cycle>& cycles = d.trace.segmentation.cycles;
-  if (d.trace.segmentation.kind != MotionKind::stick_slip || cycles.size() < drawing.shown_cycles) return {};
-  const std::size_t first = whole_cycles_near_middle(d.trace.segmentation, drawing.shown_cycles);
+  if (d.trace.segmentation.kind != MotionKind::stick_slip || cycles.size() < chart_detail.shown_cycles) return {};
+  const std::size_t first = whole_cycles_near_middle(d.trace.segmentation, chart_detail.shown_cycles);
   const Cycle& head = cycles[first];
-  const Cycle& tail = cycles[first + drawing.shown_cycles - 1];
+  const Cycle& tail = cycles[first + chart_detail.shown_cycles - 1];
   const std::size_t begin = head.stick.size() > 0 ? head.stick.begin : head.slip.begin;
   const std::size_t margin = (tail.slip.end - begin) / 20;  // a little of the next stick
   return {first, begin, std::min(d.trace.motion.size(), tail.slip.end + margin)};
@@ -118,7 +118,8 @@ Chart spectrum_chart(const DrawnTrace& d) {
   const Motion& motion = d.trace.motion;
   const std::vector<double>& v_r = motion.relative_velocity;
   const double peak = d.trace.spectral_peak.frequency;
-  const Spectrum spectrum = spectrum_up_to(v_r, motion.step, peak > 0 ? drawing.harmonics * peak : 0.5 / motion.step);
+  const Spectrum spectrum =
+      spectrum_up_to(v_r, motion.step, peak > 0 ? chart_detail.harmonics * peak : 0.5 / motion.step);
   const std::vector<double> amplitude = in_unit(spectrum.amplitude, kMillimetre);
   if (amplitude.empty()) return {};
   Chart chart = half_chart(d.id + "-spectrum", "Spectrum of the relative velocity", {"frequency", "Hz"},
@@ -130,7 +131,7 @@ Chart spectrum_chart(const DrawnTrace& d) {
     chart.marks.push_back({peak, true, Dash::dotted, ""});
   }
   ChartLine& line = chart.line("amplitude", kMeasured);
-  for (const std::size_t k : drawn_samples(amplitude, d.bins(drawing.spectrum))) {
+  for (const std::size_t k : drawn_samples(amplitude, d.bins(chart_detail.spectrum))) {
     line.add(static_cast<double>(k) * spectrum.bin_width, amplitude[k]);
   }
   return chart;
@@ -147,15 +148,15 @@ struct CycleMeasure {
 Chart cycle_chart(const DrawnTrace& d, const char* id, const char* title, ChartAxis axis, double unit,
                   std::initializer_list<CycleMeasure> measures) {
   Chart chart =
-      half_chart(d.id + "-" + id, title, {.quantity = "time of break-away", .unit = "s", .digits = drawing.time_digits},
-                 std::move(axis));
+      half_chart(d.id + "-" + id, title,
+                 {.quantity = "time of break-away", .unit = "s", .digits = chart_detail.time_digits}, std::move(axis));
   chart.height = 290;
   const std::vector<Cycle>& cycles = d.trace.segmentation.cycles;
   for (const CycleMeasure& measure : measures) {
     std::vector<double> values;
     for (const Cycle& c : cycles) values.push_back(c.*measure.value / unit);
     ChartLine& line = chart.line(measure.name, dots(measure.colour, measure.symbol));
-    for (const std::size_t k : drawn_samples(values, d.bins(drawing.measures))) {
+    for (const std::size_t k : drawn_samples(values, d.bins(chart_detail.measures))) {
       line.add(cycles[k].break_away_time, values[k]);
     }
   }
@@ -178,7 +179,7 @@ DrawnTrace::DrawnTrace(const Identification& identification, const std::vector<c
 }
 
 std::size_t DrawnTrace::bins(std::size_t whole) const {
-  return std::max(drawing.least, static_cast<std::size_t>(share * static_cast<double>(whole)));
+  return std::max(chart_detail.least, static_cast<std::size_t>(share * static_cast<double>(whole)));
 }
 
 ChartAxis friction_axis(const Motion& motion) {
@@ -196,23 +197,23 @@ std::vector<Chart> cycle_charts(const DrawnTrace& d) {
   const Motion& motion = d.trace.motion;
   const auto [first, begin, end] = shown_cycles(d);
   if (end < begin + 2) return {};
-  Chart chart = window_chart(d, {begin, end, d.bins(drawing.cycles)}, true);
+  Chart chart = window_chart(d, {begin, end, d.bins(chart_detail.cycles)}, true);
   chart.id = d.id + "-cycles";
   chart.title = d.models.empty() ? "Three cycles" : "Three cycles, measured and by the law";
-  chart.note = "Cycles " + std::to_string(first) + " to " + std::to_string(first + drawing.shown_cycles - 1) +
+  chart.note = "Cycles " + std::to_string(first) + " to " + std::to_string(first + chart_detail.shown_cycles - 1) +
                ". In stick the spring sets friction, so the law applies in slip only.";
   chart.height = 470;
-  for (std::size_t k = first; k < first + drawing.shown_cycles; ++k) shade_phases(motion, cycles[k], chart);
+  for (std::size_t k = first; k < first + chart_detail.shown_cycles; ++k) shade_phases(motion, cycles[k], chart);
   std::vector<Chart> charts = {chart};
-  const Cycle& shown = cycles[first + drawing.shown_cycles / 2];
-  const double half = drawing.event * static_cast<double>(shown.slip.size()) * motion.step;
+  const Cycle& shown = cycles[first + chart_detail.shown_cycles / 2];
+  const double half = chart_detail.event * static_cast<double>(shown.slip.size()) * motion.step;
   if (shown.stick.size() > 0) charts.push_back(zoom_chart(d, shown.break_away_time, half, "break-away", "Break-away"));
   if (shown.slip_complete) charts.push_back(zoom_chart(d, shown.restick_time, half, "restick", "Re-stick"));
   return charts;
 }
 
 Chart record_chart(const DrawnTrace& d) {
-  Chart chart = window_chart(d, {0, d.trace.motion.size(), d.bins(drawing.record)}, false);
+  Chart chart = window_chart(d, {0, d.trace.motion.size(), d.bins(chart_detail.record)}, false);
   chart.id = d.id + "-record";
   chart.title = "The whole record";
   chart.note = "Each drawn interval shows its smallest and largest sample, so single-sample spikes stay visible.";
