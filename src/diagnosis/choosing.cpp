@@ -2,10 +2,9 @@
 #include <limits>
 #include <optional>
 
-#include "judging.hpp"
+#include "evidence.hpp"
 #include "limits.hpp"
 #include "tribofit/statistics/parallel.hpp"
-#include "velocity_noise.hpp"
 
 namespace tribofit::diagnosis {
 

@@ -5,19 +5,17 @@
 #include <mutex>
 #include <optional>
 
-#include "base_law.hpp"
 #include "findings.hpp"
 #include "fit/assessment.hpp"
 #include "fit/fit_laws.hpp"
 #include "fit/points.hpp"
 #include "fit/spectral_lines.hpp"
 #include "imitations.hpp"
+#include "ladder.hpp"
 #include "limits.hpp"
 #include "record_evidence.hpp"
-#include "rival_laws.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/statistics/parallel.hpp"
-#include "unrecorded_load.hpp"
 
 namespace tribofit {
 
@@ -192,7 +190,7 @@ bool is_most_left(const std::vector<Fit>& fits, double floor) {
 /// Most of what the last rung leaves above the noise floor is a level of friction that wanders slowly.
 bool wanders(const Trial& top, const Fit& fit) {
   const double above = std::pow(fit.error.held_out_rmse, 2) - std::pow(fit.floor.rmse, 2);
-  return slow_noise_of(top.linear).variance_within() > limits::kMostOfTheError * above;
+  return slow_noise_of(top.evidence).variance_within() > limits::kMostOfTheError * above;
 }
 
 /// Far above the noise floor, an error that no recorded variable explains is not explained either.

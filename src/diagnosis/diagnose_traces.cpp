@@ -12,7 +12,6 @@
 #include <variant>
 
 #include "conclusions.hpp"
-#include "differing_runs.hpp"
 #include "fit/fit_laws.hpp"
 #include "fit/requested_effects.hpp"
 #include "fit/stick.hpp"
@@ -22,7 +21,6 @@
 #include "kinematic_effects.hpp"
 #include "limits.hpp"
 #include "tribofit/ingest/units.hpp"
-#include "unrecorded_load.hpp"
 
 namespace tribofit::diagnosis {
 

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -7,12 +9,103 @@
 #include "limits.hpp"
 #include "record_evidence.hpp"
 #include "trial.hpp"
-#include "velocity_noise.hpp"
+#include "tribofit/friction/evaluate.hpp"
+#include "tribofit/statistics/polynomials.hpp"
 
 namespace tribofit::diagnosis {
 
+double sum(const std::vector<double>& x) {
+  return std::accumulate(x.begin(), x.end(), 0.0);
+}
+
+std::vector<std::size_t> blocks_to_hold_out(const Observations& observations) {
+  return blocks_of(observations, std::clamp(observations.cycles / limits::kCyclesOfBlock, limits::kFewestBlocks,
+                                            limits::kMostBlocks));
+}
+
 Level::Level(const Observations& given)
     : observations(given), values(static_cast<double>(given.size())), samples(sum(given.weight)) {}
+
+namespace {
+
+/// Value at the middle of a parabola of least squares through 2 half + 1 values.
+double parabola_at(std::span<const double> x, std::size_t middle, std::size_t half) {
+  const auto width = static_cast<double>(2 * half + 1), squares = width * width;
+  double sum = 0;
+  for (std::size_t k = middle - half; k <= middle + half; ++k) {
+    const double from = static_cast<double>(k) - static_cast<double>(middle);
+    sum += 3 * (3 * squares - 7 - 20 * from * from) / (4 * width * (squares - 4)) * x[k];
+  }
+  return sum;
+}
+
+/// A channel smoothed within each slip; at the ends of a slip it stays as it is.
+std::vector<double> smoothed(const Observations& o, const std::vector<double>& channel) {
+  std::vector<double> out = channel;
+  for (const auto& slip : o.slips) {
+    const std::size_t n = slip.end - slip.begin;
+    if (n < 3) continue;
+    const double step = (o.time[slip.end - 1] - o.time[slip.begin]) / static_cast<double>(n - 1);
+    const auto widest = static_cast<std::size_t>(0.5 * limits::kSmoothedPart * o.scales.slip_time / step);
+    const std::span<const double> own(channel.data() + slip.begin, n);
+    for (std::size_t i = 1; i + 1 < n; ++i) {
+      const std::size_t half = std::min({widest, i, n - 1 - i});
+      if (half > 0) out[slip.begin + i] = parabola_at(own, i, half);
+    }
+  }
+  return out;
+}
+
+/// v_r in the middle of the stick before a slip, less its trend. Empty where that is too short.
+std::vector<double> noise_of_stick(const Record& record, const Observations::SlipObservation& slip) {
+  const SampleRange& stick = record.segmentation->cycles[slip.segment].stick;
+  const auto part = static_cast<std::size_t>(limits::kEndOfStick * static_cast<double>(stick.size()));
+  if (!slip.from_stick || part == 0) return {};
+  const std::span<const double> v(record.motion->relative_velocity);
+  const std::span<const double> middle = v.subspan(stick.begin + part, stick.size() - 2 * part);
+  const StraightLine line = fit_line(middle);
+  std::vector<double> noise(middle.begin(), middle.end());
+  for (std::size_t i = 0; i < noise.size(); ++i) noise[i] -= line.at(static_cast<double>(i));
+  return noise;
+}
+
+}  // namespace
+
+std::vector<double> quieten_velocity(std::span<const Record> records, Observations& observations) {
+  std::vector<double> noise(observations.size(), 0.0);
+  const std::size_t each = observations.samples_per_value;
+  for (const auto& slip : observations.slips) {
+    const std::vector<double> of_stick = noise_of_stick(records[slip.record], slip);
+    if (of_stick.size() < each) continue;
+    std::size_t sample = 0;  // a stick that is shorter than its slip is taken again from its beginning
+    for (std::size_t i = slip.begin; i < slip.end; ++i) {
+      for (std::size_t k = 0; k < each; ++k, ++sample)
+        noise[i] += of_stick[sample % of_stick.size()] / static_cast<double>(each);
+    }
+  }
+  observations.velocity = smoothed(observations, observations.velocity);
+  return smoothed(observations, noise);
+}
+
+double squares_of_velocity_noise(const Level& level, const Trial& trial) {
+  const Observations& o = level.observations;
+  double sum = 0;
+  std::vector<double> mu, noisy, velocity;
+  for (const auto& range : o.slips) {
+    const Slip slip = o.slip(range);
+    mu.resize(slip.size());
+    noisy.resize(slip.size());
+    velocity.assign(slip.velocity.begin(), slip.velocity.end());
+    evaluate<double>(trial.model, trial.p.data(), slip, velocity, mu);
+    for (std::size_t i = 0; i < velocity.size(); ++i) velocity[i] += level.velocity_noise[range.begin + i];
+    evaluate<double>(trial.model, trial.p.data(), slip, velocity, noisy);
+    for (std::size_t i = 0; i < mu.size(); ++i) {
+      const double change = noisy[i] - mu[i];
+      sum += o.weight[range.begin + i] * change * change;
+    }
+  }
+  return sum;
+}
 
 struct DiagnosisContext::Finest {
   std::once_flag made;
@@ -25,7 +118,7 @@ DiagnosisContext::DiagnosisContext(std::span<const Record> given, const Observat
     : records(given),
       fine(finely),
       coarse(coarsely),
-      blocks(finely),
+      blocks(blocks_to_hold_out(finely)),
       noise(sensor_noise),
       scatter(break_away_scatter),
       finest_(std::make_shared<Finest>()) {}

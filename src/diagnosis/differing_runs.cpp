@@ -1,4 +1,4 @@
-#include "differing_runs.hpp"
+#include "diagnose_traces.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "hidden_pairs.hpp"
+#include "ladder.hpp"
 
 #include <algorithm>
 #include <iterator>

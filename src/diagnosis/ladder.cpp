@@ -4,10 +4,7 @@
 #include <iterator>
 #include <utility>
 
-#include "hidden_pairs.hpp"
-#include "ladder_steps.hpp"
 #include "limits.hpp"
-#include "rival_laws.hpp"
 #include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/stop.hpp"
 
@@ -164,12 +161,12 @@ Ladder start_ladder(const DiagnosisContext& context, Law law, const std::vector<
 /// By how much slow noise makes two shapes of friction differ more than independent noise would: the largest design
 /// effect of what no change of level can do.
 double slow_design(const Level& level, const Trial& trial) {
-  const SlowNoise slow = slow_noise_of(trial.linear);
+  const SlowNoise slow = slow_noise_of(trial.evidence);
   if (slow.covariance.empty()) return 1;
   double largest = 1;
   for (std::size_t k = 0; k < trial.p.size(); ++k) {
-    if (trial.linear.level(static_cast<Eigen::Index>(k)) != 0) continue;
-    largest = std::max(largest, design_effect(trial.linear, k, noise_of(level, trial), slow).of_slow);
+    if (trial.evidence.level(static_cast<Eigen::Index>(k)) != 0) continue;
+    largest = std::max(largest, design_effect(trial.evidence, trial.free, k, 1, noise_of(level, trial), slow).of_slow);
   }
   return largest;
 }

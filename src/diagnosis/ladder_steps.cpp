@@ -1,4 +1,4 @@
-#include "ladder_steps.hpp"
+#include "ladder.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -36,8 +36,6 @@ inline constexpr std::size_t kCyclesOfBlock = 5;  ///< neighbours share slow sca
 /// On either side of a change: the level of fewer is a draw of slow scatter (stick-slip with 1/f noise moves).
 inline constexpr std::size_t kFewestBesideChange = kCyclesOfBlock;
 inline constexpr std::size_t kFewestBlocks = 2, kMostBlocks = 10;  ///< ten: the usual compromise of cross-validation
-/// Of what all cycles know about a direction the kept ones must know this part: less, and the step there is a guess.
-inline constexpr double kLeastKnown = 0.1;
 
 // What excites an effect.
 inline constexpr double kLeastLoadSpread = 0.03;      ///< of the load: a load that was meant to be constant varies less

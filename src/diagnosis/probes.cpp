@@ -8,10 +8,9 @@
 #include <numbers>
 #include <optional>
 
+#include "evidence.hpp"
 #include "fit/points.hpp"
 #include "fit/spectral_lines.hpp"
-#include "hats.hpp"
-#include "judge_probe.hpp"
 #include "limits.hpp"
 #include "tribofit/friction/evaluate.hpp"
 #include "tribofit/statistics/parallel.hpp"
@@ -20,6 +19,39 @@
 namespace tribofit::diagnosis {
 
 namespace {
+
+/// Straight lines between knots: the weights of x on them.
+class LinesBetweenKnots {
+ public:
+  explicit LinesBetweenKnots(std::vector<double> knots) : knots_(std::move(knots)) {}
+  Eigen::Index count() const { return static_cast<Eigen::Index>(knots_.size()); }
+  const std::vector<double>& knots() const { return knots_; }
+
+  Eigen::RowVectorXd operator()(double x) const {
+    Eigen::RowVectorXd out = Eigen::RowVectorXd::Zero(count());
+    const auto next = std::upper_bound(knots_.begin(), knots_.end(), x);
+    if (next == knots_.begin()) {
+      out(0) = 1;
+    } else if (next == knots_.end()) {
+      out(count() - 1) = 1;
+    } else {
+      const auto k = static_cast<Eigen::Index>(next - knots_.begin());
+      const double u = (x - *(next - 1)) / (*next - *(next - 1));
+      out(k - 1) = 1 - u;
+      out(k) = u;
+    }
+    return out;
+  }
+
+ private:
+  std::vector<double> knots_;
+};
+
+std::vector<double> even_knots(double first, double last, int count) {
+  std::vector<double> knots;
+  for (int k = 0; k < count; ++k) knots.push_back(first + (last - first) * k / (count - 1));
+  return knots;
+}
 
 double middle_time(const Observations& observations, const Observations::SlipObservation& slip) {
   return 0.5 * (observations.time[slip.begin] + observations.time[slip.end - 1]);
@@ -64,23 +96,23 @@ Columns columns_of(const Observations& observations, Eigen::Index count, Row row
 
 Probe over_velocity(const DiagnosisContext& context, const Level& level, const Trial& trial) {
   const Observations& o = level.observations;
-  const Hats hats(even_knots(0, o.fastest, 12));
+  const LinesBetweenKnots lines(even_knots(0, o.fastest, 12));
   Probe probe;
   probe.variable = ResidualVariable::velocity;
-  const auto row = [&o, &hats](std::size_t k, std::size_t i) {
+  const auto row = [&o, &lines](std::size_t k, std::size_t i) {
     const auto& range = o.slips[k];
     const bool at_rest = range.begin + i == range.end;
-    return hats(at_rest ? 0.0 : std::abs(o.velocity[range.begin + i]));
+    return lines(at_rest ? 0.0 : std::abs(o.velocity[range.begin + i]));
   };
-  const Eigen::VectorXd found = judge_probe(context, level, trial, columns_of(o, hats.count(), row), 1, probe);
-  probe.at = hats.knots();
+  const Eigen::VectorXd found = judge_probe(context, level, trial, columns_of(o, lines.count(), row), 1, probe);
+  probe.at = lines.knots();
   probe.value.assign(found.data(), found.data() + found.size());
   return probe;
 }
 
 Probe over_branch(const DiagnosisContext& context, const Level& level, const Trial& trial) {
   const Observations& o = level.observations;
-  const Hats hats(even_knots(0, o.fastest, 6));
+  const LinesBetweenKnots lines(even_knots(0, o.fastest, 6));
   Probe probe;
   probe.variable = ResidualVariable::branch;
   std::vector<std::size_t> peak;
@@ -94,11 +126,11 @@ Probe over_branch(const DiagnosisContext& context, const Level& level, const Tri
   const auto row = [&](std::size_t k, std::size_t i) {
     const auto& range = o.slips[k];
     const std::size_t at = range.begin + i;
-    if (at == range.end) return hats(0);
+    if (at == range.end) return lines(0);
     const double sign = at < peak[k] ? 1 : -1;
-    return Eigen::RowVectorXd(sign * hats(std::abs(o.velocity[at])));
+    return Eigen::RowVectorXd(sign * lines(std::abs(o.velocity[at])));
   };
-  judge_probe(context, level, trial, columns_of(o, hats.count(), row), 1, probe);
+  judge_probe(context, level, trial, columns_of(o, lines.count(), row), 1, probe);
   return probe;
 }
 
@@ -223,15 +255,16 @@ std::optional<Probe> over_reversal_distance(const DiagnosisContext& context, con
   const double longest = *std::max_element(o.reversal_distance.begin(), o.reversal_distance.end());
   std::vector<double> knots = even_knots(0, 1, 9);
   for (double& knot : knots) knot *= knot * longest;
-  const Hats hats(knots);
+  const LinesBetweenKnots lines(knots);
   Probe probe;
   probe.variable = ResidualVariable::reversal_distance;
-  const auto row = [&o, &hats](std::size_t k, std::size_t i) {
+  const auto row = [&o, &lines](std::size_t k, std::size_t i) {
     const auto& range = o.slips[k];
-    return hats(o.reversal_distance[std::min(range.begin + i, range.end - 1)]);
+    return lines(o.reversal_distance[std::min(range.begin + i, range.end - 1)]);
   };
-  const Eigen::VectorXd found = judge_probe(context, context.coarse, trial, columns_of(o, hats.count(), row), 1, probe);
-  probe.at = hats.knots();
+  const Eigen::VectorXd found =
+      judge_probe(context, context.coarse, trial, columns_of(o, lines.count(), row), 1, probe);
+  probe.at = lines.knots();
   probe.value.assign(found.data(), found.data() + found.size());
   return probe;
 }
@@ -241,14 +274,14 @@ std::optional<Probe> over_load(const DiagnosisContext& context, const Trial& tri
   if (o.load.empty()) return std::nullopt;
   const auto [least, most] = std::minmax_element(o.load.begin(), o.load.end());
   if (*most - *least < limits::kLeastLoadSpread * std::abs(o.mean_load)) return std::nullopt;
-  const Hats hats(even_knots(*least, *most, 4));
+  const LinesBetweenKnots lines(even_knots(*least, *most, 4));
   Probe probe;
   probe.variable = ResidualVariable::load;
   const auto functions = [&](std::size_t k, std::size_t i) {
     const auto& range = o.slips[k];
-    return hats(o.load[std::min(range.begin + i, range.end - 1)]);
+    return lines(o.load[std::min(range.begin + i, range.end - 1)]);
   };
-  judge_probe(context, context.coarse, trial, scaling(inputs, hats.count(), functions), 1, probe);
+  judge_probe(context, context.coarse, trial, scaling(inputs, lines.count(), functions), 1, probe);
   return probe;
 }
 
@@ -273,7 +306,7 @@ std::optional<Probe> over_stick_time(const DiagnosisContext& context, const Tria
   std::sort(sticks.begin(), sticks.end());
   const double low = quantile_of_sorted(sticks, 0.05), high = quantile_of_sorted(sticks, 0.95);
   if (high - low < std::log(limits::kLeastStickRatio)) return std::nullopt;
-  const Hats hats(even_knots(low, high, 4));
+  const LinesBetweenKnots lines(even_knots(low, high, 4));
   Probe probe;
   probe.variable = ResidualVariable::stick_time;
   const auto row = [&](std::size_t k, std::size_t i) {
@@ -283,19 +316,19 @@ std::optional<Probe> over_stick_time(const DiagnosisContext& context, const Tria
     // What a higher break-away does to the slip fades with speed as the law does.
     const double speed = at_rest ? 0 : std::abs(o.velocity[range.begin + i]);
     const double fade = at_rest ? 1 : break_away_left(trial.model.law(), trial.p, speed);
-    return Eigen::RowVectorXd((known ? fade : 0.0) * hats(known ? given[k] : low));
+    return Eigen::RowVectorXd((known ? fade : 0.0) * lines(known ? given[k] : low));
   };
-  judge_probe(context, context.coarse, trial, columns_of(o, hats.count(), row), 1, probe);
+  judge_probe(context, context.coarse, trial, columns_of(o, lines.count(), row), 1, probe);
   return probe;
 }
 
 std::optional<Probe> over_frequency(const DiagnosisContext& context, const Trial& fine,
                                     std::span<const double> residual) {
   const Observations& o = context.fine.observations;
-  const SpectralLines lines = strongest_lines(
+  const SpectralLines found = strongest_lines(
       context.records[0], o, residual, 1 / (limits::kSlowestLine * o.scales.slip_time), 0.4 * observation_rate(o));
-  if (lines.frequencies.empty()) return std::nullopt;
-  const double frequency = lines.frequencies.front();
+  if (found.frequencies.empty()) return std::nullopt;
+  const double frequency = found.frequencies.front();
   Probe probe;
   probe.variable = ResidualVariable::frequency;
   probe.period = 1 / frequency;
@@ -309,7 +342,7 @@ std::optional<Probe> over_frequency(const DiagnosisContext& context, const Trial
     }
     return out;
   };
-  judge_probe(context, context.fine, fine, columns, lines.places, probe);
+  judge_probe(context, context.fine, fine, columns, found.places, probe);
   return probe;
 }
 

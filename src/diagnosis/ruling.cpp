@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "judging.hpp"
+#include "evidence.hpp"
 #include "limits.hpp"
 #include "record_evidence.hpp"
 

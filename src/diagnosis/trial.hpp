@@ -10,11 +10,16 @@
 #include <vector>
 
 #include "candidates.hpp"
+#include "fit/cycle_evidence.hpp"
 #include "fit/starts.hpp"
-#include "held_out.hpp"
 #include "tribofit/fit/fit.hpp"
 
 namespace tribofit::diagnosis {
+
+/// About ten blocks of at least five cycles: neighbours share slow scatter.
+std::vector<std::size_t> blocks_to_hold_out(const Observations& observations);
+
+double sum(const std::vector<double>& x);
 
 /// A model fitted to the observations, with what it leaves.
 ///
@@ -25,17 +30,18 @@ namespace tribofit::diagnosis {
 /// stick are thus what they were without that evidence.
 struct Trial {
   FrictionModel model{ExponentialLaw{}};
-  std::vector<double> p;  ///< SI
-  std::vector<bool> at_bound;
-  bool usable = false;  ///< finite
+  std::vector<double> p;             ///< SI
+  std::vector<bool> at_bound, free;  ///< of each parameter: whether a bound holds it, or the data do
+  bool usable = false;               ///< finite
   ModelResiduals::Whitening whitening;
-  Linearised linear;             ///< at p
-  std::vector<double> held_out;  ///< squares of each cycle, from parameters that the other blocks suggest
-  double squares = 0;            ///< of all cycles, at p
-  double row_squares = 0;        ///< the same without what is paid for scatter: of the rows of `linear`
-  double plain_squares = 0;      ///< the same not whitened: scatter of break-away counts in full
-  double held_out_squares = 0;   ///< sum of held_out
-  Linearised plain;              ///< not whitened, stepped to its own minimum
+  CycleEvidence evidence;           ///< at p
+  std::vector<double> held_out;     ///< squares of each cycle, from parameters that the other blocks suggest
+  double squares = 0;               ///< of all cycles, at p
+  double row_squares = 0;           ///< the same without what is paid for scatter: of the rows of `evidence`,
+  double row_held_out_squares = 0;  ///< and on held-out cycles
+  double plain_squares = 0;         ///< the same not whitened: scatter of break-away counts in full
+  double held_out_squares = 0;      ///< sum of held_out
+  CycleEvidence plain;              ///< not whitened, stepped to its own minimum
   double plain_minimum = 0, plain_held_out = 0;  ///< squares there, and on held-out cycles
   std::vector<double> plain_cycles;  ///< squares on held-out cycles, of each cycle, without those of the stick
   /// Of all sticks; zero where the model is rigid there, and where it explains so little of what v_r shows in stick
@@ -61,11 +67,11 @@ struct DiagnosisContext {
   std::span<const Record> records;
   Level fine;    ///< what models are judged by
   Level coarse;  ///< fewer values a slip: where a search begins, and where the hopeless are found out
-  Blocks blocks;
-  double noise = 0;    ///< sensor noise of a sample [1 or N]
-  double scatter = 0;  ///< of break-away from cycle to cycle [1 or N]
-  double shared = 0;   ///< of its squares, what sampling and corrections leave: no chance, and no structure either
-  double swing = 0;    ///< see common_swing()
+  std::vector<std::size_t> blocks;  ///< of every cycle: contiguous ones that are held out in turn
+  double noise = 0;                 ///< sensor noise of a sample [1 or N]
+  double scatter = 0;               ///< of break-away from cycle to cycle [1 or N]
+  double shared = 0;  ///< of its squares, what sampling and corrections leave: no chance, and no structure either
+  double swing = 0;   ///< see common_swing()
 
   int threads = 1;  ///< over candidates
 
@@ -86,6 +92,14 @@ struct DiagnosisContext {
   struct Finest;
   std::shared_ptr<Finest> finest_;
 };
+
+/// Residuals of all slips as a trial has them. scatter: whether that of break-away is taken out; threads: that share
+/// its slips.
+ModelResiduals residuals_of(const Observations& observations, const FrictionModel& model,
+                            const ModelResiduals::Whitening& whitening, int threads = 1, bool scatter = true);
+
+/// Sums over all sticks.
+ModelResiduals::StickSquares all_sticks(const std::vector<ModelResiduals::StickSquares>& sticks);
 
 /// Variance of a row of friction beside the model of a trial.
 double noise_of(const Level& level, const Trial& trial);
@@ -147,5 +161,22 @@ Searched try_with(const DiagnosisContext& context, const Level& level, const Tri
 
 /// Model, parameters and whitening of a trial without one of its effects; nothing is fitted anew.
 Trial without_effect(const Trial& full, std::string_view key);
+
+/// Smooths v_r, parabolas over a part of the time of a slip (narrower at its ends), and returns the noise that is left
+/// of it at every value: that of the stick before each slip, smoothed alike; zero where there is none. Linear in
+/// values.
+std::vector<double> quieten_velocity(std::span<const Record> records, Observations& observations);
+
+/// Squares that this noise adds to those of a trial. What it does to friction at single values is an error of every
+/// model but those that smooth what they predict, as a filter does: they would be ahead by it.
+double squares_of_velocity_noise(const Level& level, const Trial& trial);
+
+/// A start of a wave (an effect with an amplitude first and one phase) with the amplitude and phase that fit there.
+///
+/// A cos(wt + phase) is linear in A cos(phase) and A sin(phase), and not in A and phase: from a small amplitude a step
+/// in these turns the phase round, and a search ends far away. Here the step is taken in the former; the start is
+/// returned as it was where that leaves more, and for every other effect. Cost: three passes over the values.
+std::vector<double> with_amplitude_and_phase(const ModelResiduals& residuals, const FrictionModel& model,
+                                             const EffectInfo& effect, const Bounds& bounds, std::vector<double> start);
 
 }  // namespace tribofit::diagnosis

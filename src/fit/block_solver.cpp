@@ -132,14 +132,14 @@ class Blocks {
 
 }  // namespace
 
-SolverResult minimize(std::span<const ResidualPart> parts, std::span<const double> start, std::span<const double> lower,
-                      std::span<const double> upper, const SolverOptions& options) {
+Minimum minimize(std::span<const ResidualPart> parts, std::span<const double> start, std::span<const double> lower,
+                 std::span<const double> upper, const SolverOptions& options) {
   const QuietLogging quiet;
   Blocks blocks(parts, start, lower, upper);
   ceres::Problem problem;
   auto order = std::make_shared<ceres::ParameterBlockOrdering>();
   for (std::size_t r = 0; r < parts.size(); ++r) blocks.add(parts[r], r, problem, *order);
-  SolverResult result;
+  Minimum result;
   result.p.assign(start.begin(), start.end());
   if (problem.NumResidualBlocks() == 0) {
     result.message = "nothing to fit";

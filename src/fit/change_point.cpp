@@ -1,5 +1,3 @@
-#include "change_point.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "fit_steps.hpp"
 #include "limits.hpp"
 #include "tribofit/statistics/change_point.hpp"
 #include "tribofit/statistics/parallel.hpp"
@@ -149,14 +148,14 @@ double best_change(const ChangePoint& point, const ModelResiduals& residuals, co
 }
 
 std::pair<double, double> interval_of_change(const ChangePoint& point, const ModelResiduals& residuals,
-                                             const Observations& observations, const NormalEquations& equations,
+                                             const Observations& observations, const CycleEvidence& evidence,
                                              const Bounds& bounds, std::vector<double> p, int threads) {
   const double best = p[point.time];
   const auto size = static_cast<Eigen::Index>(point.size);
   double spread = 0, known = 0;
-  for (std::size_t c = 0; c < equations.curvature.size(); ++c) {
-    spread += std::pow(equations.gradient[c](size), 2);
-    known += equations.curvature[c](size, size);
+  for (std::size_t c = 0; c < evidence.curvature.size(); ++c) {
+    spread += std::pow(evidence.gradient[c](size), 2);
+    known += evidence.curvature[c](size, size);
   }
   const ChangeInTime scan(point, residuals, observations, std::move(p));
   if (scan.squares.empty()) return {bounds.lower[point.time], bounds.upper[point.time]};
@@ -188,6 +187,13 @@ std::pair<double, double> interval_of_change(const ChangePoint& point, const Mod
     if (side == 1 && after < slips) upper = wall(latest, scan.end[after]);
   });
   return {lower, upper};
+}
+
+void find_change(FitContext& context, const ChangePoint& change, Bounds& held, std::vector<double>& p) {
+  // Slips at levels of their own would hide a change that is misplaced.
+  const ModelResiduals residuals = context.residuals(all_slips(context.observations), false);
+  p[change.time] = best_change(change, residuals, context.observations, context.bounds, p, context.evaluation.threads);
+  held.lower[change.time] = held.upper[change.time] = p[change.time];
 }
 
 }  // namespace tribofit

@@ -1,11 +1,9 @@
-#include "cross_validation.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
+#include "fit_steps.hpp"
 #include "limits.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
@@ -14,33 +12,25 @@ namespace tribofit {
 namespace {
 
 /// How far the levels by per-cycle extremes move when the cycles of a fold are left out.
-Eigen::VectorXd shift_of_levels(const FitContext& context, const Solution& solution, const Fit& fit, std::size_t fold) {
-  const std::vector<double>& p = solution.values();
+Eigen::VectorXd shift_of_levels(const FitContext& context, const Fit& fit, std::size_t fold) {
+  const std::vector<double>& p = context.minimum.p;
   Eigen::VectorXd shift = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(p.size()));
   if (!context.by_extremes()) return shift;
-  std::vector<bool> left_out(context.observations.cycles);
-  for (std::size_t c = 0; c < left_out.size(); ++c) left_out[c] = fit.cycle_folds[c] == fold;
-  const std::array<double, 2> kept = solution.extremes.means(left_out);
+  std::vector<bool> left_out;
+  for (const std::size_t own : fit.cycle_folds) left_out.push_back(own == fold);
+  const std::array<double, 2> kept = context.extremes.means(left_out);
   for (std::size_t k = 0; k < 2; ++k) {
     if (std::isfinite(kept[k])) shift(static_cast<Eigen::Index>(k)) = kept[k] - p[k];
   }
   return shift;
 }
 
-/// One Gauss-Newton step from the fit of all towards that of the cycles outside a fold.
-Eigen::VectorXd step_without(const FitContext& context, const Solution& solution, const NormalEquations& equations,
-                             const std::vector<bool>& free, const Fit& fit, std::size_t fold) {
-  Eigen::MatrixXd curvature = equations.total;
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(curvature.rows());
-  for (std::size_t c = 0; c < context.observations.cycles; ++c) {
-    if (fit.cycle_folds[c] == fold) {
-      curvature -= equations.curvature[c];
-    } else {
-      gradient += equations.gradient[c];
-    }
-  }
-  const Eigen::VectorXd levels = shift_of_levels(context, solution, fit, fold);
-  return levels - inverse_where_known(curvature, equations.total, free) * (gradient + curvature * levels);
+/// One Gauss-Newton step from the fit of all towards that of the cycles outside a fold. directions: known_directions().
+Eigen::VectorXd step_without(const FitContext& context, const CycleEvidence& evidence,
+                             const Eigen::MatrixXd& directions, const Fit& fit, std::size_t fold) {
+  const NormalSum kept = sum_of(evidence, fit.cycle_folds, fold);
+  const Eigen::VectorXd levels = shift_of_levels(context, fit, fold);
+  return levels - inverse_where_known(kept.curvature, directions) * (kept.gradient + kept.curvature * levels);
 }
 
 /// Every value is one sample, and none is spoilt: the observations hold all that the record does.
@@ -95,16 +85,11 @@ std::vector<double> shortened_step(const FitContext& context, const std::vector<
   std::vector<std::size_t> some;
   for (std::size_t k = 0; k < kept.size(); k += every) some.push_back(kept[k]);
   const ModelResiduals residuals = context.residuals(some);
-  std::vector<double> left(residuals.count());
-  const auto cost = [&](const std::vector<double>& at) {
-    if (!residuals.evaluate(at.data(), left.data(), nullptr)) return std::numeric_limits<double>::infinity();
-    return std::inner_product(left.begin(), left.end(), left.begin(), 0.0);
-  };
-  const double here = cost(p);
+  const double here = residuals.white_squares(p.data());
   for (int k = 0; k <= kHalvings; ++k, step /= 2) {
     std::vector<double> q = p;
     take_step(context.bounds, free, step, q);
-    if (cost(q) <= here) return q;
+    if (residuals.white_squares(q.data()) <= here) return q;
   }
   return p;
 }
@@ -124,26 +109,27 @@ bool take_step(const Bounds& bounds, const std::vector<bool>& free, const Eigen:
   return is_long;
 }
 
-void cross_validate(const FitContext& context, const Solution& solution, const NormalEquations& equations,
-                    const std::vector<bool>& free, const SampleErrors& errors, Fit& fit) {
+void cross_validate(const FitContext& context, const CycleEvidence& evidence, const std::vector<bool>& free,
+                    const SampleErrors& errors, Fit& fit) {
   const Observations& observations = context.observations;
-  const std::vector<double>& p = solution.values();
+  const std::vector<double>& p = context.minimum.p;
   const std::size_t folds = std::min(observations.cycles, static_cast<std::size_t>(std::max(2, context.options.folds)));
   fit.cycle_counts = errors.counts;
   fit.cycle_squares = errors.squares;
   fit.fold_parameters.assign(folds, p);
   fit.cycle_folds = blocks_of(observations, folds);
   const bool every_sample = are_all_samples(observations, errors.counts);
+  const Eigen::MatrixXd directions = known_directions(evidence.total, free);
   run_tasks(folds, context.evaluation.threads, [&](std::size_t fold) {
     std::vector<std::size_t> held, kept;
     for (const std::size_t s : all_slips(observations)) {
       (fit.cycle_folds[observations.slips[s].cycle] == fold ? held : kept).push_back(s);
     }
     std::vector<double>& q = fit.fold_parameters[fold];
-    const Eigen::VectorXd step = step_without(context, solution, equations, free, fit, fold);
+    const Eigen::VectorXd step = step_without(context, evidence, directions, fit, fold);
     const bool is_long = take_step(context.bounds, free, step, q);
     if (is_long && !context.by_extremes())
-      q = context.is_look() ? shortened_step(context, kept, p, free, step) : context.solve(kept, p, quick_search()).p;
+      q = context.is_look() ? shortened_step(context, kept, p, free, step) : context.solve(kept, p, kQuickSearch).p;
     set_squares_of_fold(context, held, p, q, every_sample, fit);
   });
   const double squares = std::accumulate(fit.cycle_squares.begin(), fit.cycle_squares.end(), 0.0);

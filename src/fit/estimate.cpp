@@ -1,5 +1,3 @@
-#include "estimate.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,10 +8,9 @@
 #include <optional>
 #include <utility>
 
-#include "change_point.hpp"
+#include "fit_steps.hpp"
 #include "limits.hpp"
 #include "reduced.hpp"
-#include "refinement.hpp"
 #include "spectral_lines.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
@@ -21,20 +18,15 @@ namespace tribofit {
 
 namespace {
 
-/// Evenly spread slips with about `values` values; every so many that both directions take part.
-std::vector<std::size_t> some_slips(const Observations& observations, std::size_t values) {
-  const std::size_t every = (observations.size() / values) | 1U;
-  std::vector<std::size_t> slips;
-  for (std::size_t k = 0; k < observations.slips.size(); k += every) slips.push_back(k);
-  return slips;
-}
-
 /// The last digits, which its last steps take (SolverOptions::careful); along a flat valley nothing is gained by going
 /// on, and this part of the cost is less than a hundredth of a standard error of any record.
-SolverOptions careful_search() {
-  SolverOptions careful;
-  careful.relative_cost = 1e-10;
-  return careful;
+constexpr SolverOptions kCarefulSearch{.relative_cost = 1e-10};
+
+/// Values on which starts are compared; of means half as many slips do.
+constexpr std::size_t kValuesToCompare = 4000;
+
+const SolverOptions& search_of(const FitContext& context) {
+  return context.is_look() ? kShortSearch : kQuickSearch;
 }
 
 /// A start at a line with the phase, of a few, that leaves least: only a line that is in phase draws a search.
@@ -62,7 +54,6 @@ SpectralLines lines_about_mean_curve(const FitContext& context, double lowest, d
 /// A spectral line is narrower than any random start would find: the strongest lines about the mean friction over
 /// speed are starts too.
 void add_starts_at_lines(const FitContext& context, std::vector<std::vector<double>>& starts) {
-  constexpr std::size_t kValuesToCompare = 4000;
   const auto parameters = context.model.parameters();
   const std::vector<double> from_data = starts[0];
   for (std::size_t k = 0; k < parameters.size(); ++k) {
@@ -105,13 +96,13 @@ std::vector<std::vector<double>> different_starts(const FitContext& context) {
 }
 
 /// Searches from each start. A look soon gives up all but the two that are ahead.
-std::vector<SolverResult> searches_from(const FitContext& context, const std::vector<std::vector<double>>& starts,
-                                        const std::vector<std::size_t>& part, const SolverOptions& search) {
+std::vector<Minimum> searches_from(const FitContext& context, const std::vector<std::vector<double>>& starts,
+                                   const std::vector<std::size_t>& part) {
   constexpr std::size_t kAhead = 2;
   const bool gives_up = context.is_look() && starts.size() > kAhead;
-  SolverOptions first = search;
+  SolverOptions first = search_of(context);
   if (gives_up) first.max_iterations = kIterationsToCompare;
-  std::vector<SolverResult> tries(starts.size());
+  std::vector<Minimum> tries(starts.size());
   run_tasks(starts.size(), context.evaluation.threads,
             [&](std::size_t k) { tries[k] = context.solve(part, starts[k], first); });
   if (!gives_up) return tries;
@@ -120,20 +111,19 @@ std::vector<SolverResult> searches_from(const FitContext& context, const std::ve
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return tries[a].cost < tries[b].cost; });
   run_tasks(kAhead, context.evaluation.threads, [&](std::size_t k) {
-    SolverResult& own = tries[order[k]];
-    if (!own.converged) own = context.solve(part, own.p, search);
+    Minimum& own = tries[order[k]];
+    if (!own.converged) own = context.solve(part, own.p, search_of(context));
   });
   return tries;
 }
 
 /// Where the best of several starts leads, compared on slips with about so many values.
 std::vector<double> best_of_starts(const FitContext& context, const std::vector<std::vector<double>>& starts,
-                                   std::size_t values, const SolverOptions& search, Fit& fit) {
-  const std::vector<std::size_t> part = some_slips(context.observations, values);
-  const std::vector<SolverResult> tries = searches_from(context, starts, part, search);
+                                   std::size_t values, Fit& fit) {
+  const std::vector<Minimum> tries = searches_from(context, starts, some_slips(context.observations, values));
   std::size_t best = 0;
   for (std::size_t k = 1; k < tries.size(); ++k) {
-    if (tries[k].cost < tries[best].cost * (1 - std::max(1e-6, search.relative_cost))) best = k;
+    if (tries[k].cost < tries[best].cost * (1 - std::max(1e-6, search_of(context).relative_cost))) best = k;
   }
   if (best != 0)
     fit.messages.push_back("the best fit was found from a random start, not from the one the data suggest");
@@ -145,20 +135,16 @@ std::vector<double> best_of_starts(const FitContext& context, const std::vector<
 /// `held`.
 void settle(FitContext& context, const std::vector<std::size_t>& slips, const std::optional<ChangePoint>& change,
             Bounds& held, std::vector<double>& p) {
-  const bool look = context.is_look();
-  const SolverOptions search = look ? short_search() : quick_search();
   const std::vector<std::size_t> all = all_slips(context.observations);
-  // The direction in which a slip scatters is that of the law, known better once it has been taken out. Where scatter
-  // is most of what a law leaves, three passes still hold something of the start.
+  // The direction in which a slip scatters is that of the law, known better once it has been taken out.
   const ModelResiduals plain(context.model, context.observations, all, context.evaluation);
-  constexpr int kFewestPasses = 3, kMostPasses = 20;
   bool is_settled = false;
   for (int pass = 0; pass < kMostPasses && !is_settled; ++pass) {
-    context.whiten_at(plain, p, change.has_value());
+    context.whiten_at(plain, p);
     if (change) find_change(context, *change, held, p);
     if (pass + 1 == kMostPasses) break;
-    std::vector<double> next = context.solve(slips, p, search, held).p;
-    if (look) {
+    std::vector<double> next = context.solve(slips, p, search_of(context), held).p;
+    if (context.is_look()) {
       p = std::move(next);
       break;
     }
@@ -176,10 +162,8 @@ std::vector<double> search_on(const Observations& few, const std::vector<std::si
   coarse.given = context.given;
   coarse.bounds = context.bounds;
   coarse.evaluation = context.evaluation;
-  const SolverOptions search = context.is_look() ? short_search() : quick_search();
-  constexpr std::size_t kMeansToCompare = 2000;  // of as many slips as twice the values that are no means
-  std::vector<double> p = best_of_starts(coarse, starts, kMeansToCompare, search, fit);
-  if (!context.is_look() || !change) p = coarse.solve(slips, p, search).p;
+  std::vector<double> p = best_of_starts(coarse, starts, kValuesToCompare / 2, fit);
+  if (!context.is_look() || !change) p = coarse.solve(slips, p, search_of(context)).p;
   if (context.is_look() && !change) return p;  // the scatter is taken out by the step over all values
   Bounds held = coarse.bounds;
   settle(coarse, slips, change, held, p);
@@ -190,12 +174,10 @@ std::vector<double> search_on(const Observations& few, const std::vector<std::si
 /// that scatter taken out. Where there are many values the search runs on means of them, or on some of the slips where
 /// every value counts, and what it finds is taken to where all of them lead. A look stays there where it cannot be:
 /// along a flat valley.
-Solution joint_estimate(FitContext& context, Fit& fit) {
-  Solution out;
+void joint_estimate(FitContext& context, Fit& fit) {
   const bool look = context.is_look();
-  const SolverOptions search = look ? short_search() : quick_search();
   const std::vector<std::vector<double>> starts = different_starts(context);
-  out.start = starts[0];
+  context.first_start = starts[0];
   const std::optional<ChangePoint> change = change_point_of(context.model);
   const std::vector<std::size_t> all = all_slips(context.observations);
   const std::optional<Observations> means =
@@ -204,42 +186,38 @@ Solution joint_estimate(FitContext& context, Fit& fit) {
   const std::vector<std::size_t> slips = means ? all : some_slips(few, look ? kWholeSlipsOfLook : kWholeSlips);
   Bounds held = context.bounds;
   const bool is_short = !means && slips.size() == all.size();
+  std::vector<double>& p = context.minimum.p;
   if (is_short) {
-    constexpr std::size_t kValuesToCompare = 4000;
-    out.result.p = context.solve(all, best_of_starts(context, starts, kValuesToCompare, search, fit), search).p;
-    if (change && look) settle(context, all, change, held, out.result.p);
+    p = context.solve(all, best_of_starts(context, starts, kValuesToCompare, fit), search_of(context)).p;
+    if (change && look) settle(context, all, change, held, p);
   } else {
-    out.result.p = search_on(few, slips, context, starts, change, fit);
+    p = search_on(few, slips, context, starts, change, fit);
   }
-  if (look || !is_short) {
-    out.result.converged = true;
-    if (look) {
-      out.residuals.emplace(refine_look(context, change, held, out.result.p));
-      return out;
-    }
-    if (refine(context, change, held, out.result.p)) return out;
+  context.minimum.converged = look || !is_short;
+  if (look) {
+    context.at_minimum.emplace(refine_look(context, change, held, p));
+    return;
+  }
+  if (!is_short) {
+    if (refine(context, change, held, p)) return;
     held = context.bounds;
   }
-  settle(context, all, change, held, out.result.p);
-  out.result = context.solve(all, out.result.p, careful_search(), held);
-  return out;
+  settle(context, all, change, held, p);
+  context.minimum = context.solve(all, p, kCarefulSearch, held);
 }
 
 /// [D] 3.2: levels from extremes, then the decay factor alone.
-Solution estimate_by_extremes(FitContext& context, Fit& fit) {
-  Solution out;
-  out.extremes = extremes_of(context.observations, context.records);
-  out.start = start_from_data(context.model, context.observations, context.bounds);
-  apply_given(context.model, context.options.given, context.bounds, out.start);
-  const std::array<double, 2> levels = out.extremes.means();
-  out.has_levels = std::isfinite(levels[0]) && std::isfinite(levels[1]);
-  if (!out.has_levels) {
-    out.result.p = out.start;
-    out.result.message = "the per-cycle extremes need at least three cycles that stick and slip";
-    return out;
+bool estimate_by_extremes(FitContext& context, Fit& fit) {
+  context.extremes = extremes_of(context.observations, context.records);
+  context.first_start = start_from_data(context.model, context.observations, context.bounds);
+  apply_given(context.model, context.options.given, context.bounds, context.first_start);
+  const std::array<double, 2> levels = context.extremes.means();
+  if (!std::isfinite(levels[0]) || !std::isfinite(levels[1])) {
+    context.minimum.message = "the per-cycle extremes need at least three cycles that stick and slip";
+    return false;
   }
   for (std::size_t k = 0; k < 2; ++k) {
-    out.start[k] = context.bounds.lower[k] = context.bounds.upper[k] = levels[k];
+    context.first_start[k] = context.bounds.lower[k] = context.bounds.upper[k] = levels[k];
   }
   for (const GivenParameter& given : context.options.given) {
     if (given.name != static_level_name && given.name != kinetic_level_name) continue;
@@ -248,11 +226,12 @@ Solution estimate_by_extremes(FitContext& context, Fit& fit) {
   const std::vector<std::size_t> all = all_slips(context.observations),
                                  some = some_slips(context.observations, kWholeSlips);
   const bool is_long = some.size() < all.size();  // the search leaves a step or two over all slips
-  const std::vector<double> p = is_long ? context.solve(some, out.start, quick_search()).p : out.start;
+  const std::vector<double> p =
+      is_long ? context.solve(some, context.first_start, kQuickSearch).p : context.first_start;
   SolverOptions last;  // a tolerance of the cost ends it before its step, so that of the parameters has to
   if (is_long) last.relative_cost = 1e-13, last.relative_step = 1e-9, last.careful = false;
-  out.result = context.solve(all, p, last);
-  return out;
+  context.minimum = context.solve(all, p, last);
+  return true;
 }
 
 }  // namespace
@@ -263,28 +242,23 @@ bool are_alike(const std::vector<double>& a, const std::vector<double>& b) {
                     [](double x, double y) { return std::abs(x - y) <= kSame * std::max(std::abs(x), std::abs(y)); });
 }
 
-SolverOptions quick_search() {
-  SolverOptions quick;
-  quick.max_iterations = 40;
-  quick.relative_cost = 1e-8;
-  quick.relative_step = 1e-7;
-  quick.careful = false;
-  return quick;
+std::vector<std::size_t> some_slips(const Observations& observations, std::size_t values) {
+  const std::size_t every = (observations.size() / values) | 1U;
+  std::vector<std::size_t> slips;
+  for (std::size_t k = 0; k < observations.slips.size(); k += every) slips.push_back(k);
+  return slips;
 }
 
-SolverOptions short_search() {
-  SolverOptions look = quick_search();
-  look.max_iterations = 12;
-  look.relative_cost = 1e-4;  // a step over all values follows
-  look.hold_at_bounds = true;
-  return look;
-}
-
-Solution estimate(FitContext& context, Fit& fit) {
-  Solution out = context.by_extremes() ? estimate_by_extremes(context, fit) : joint_estimate(context, fit);
-  fit.converged = out.result.converged;
-  if (!fit.converged) fit.messages.push_back(out.result.message);
-  return out;
+bool estimate(FitContext& context, Fit& fit) {
+  bool has_levels = true;
+  if (context.by_extremes()) {
+    has_levels = estimate_by_extremes(context, fit);
+  } else {
+    joint_estimate(context, fit);
+  }
+  fit.converged = context.minimum.converged;
+  if (!fit.converged) fit.messages.push_back(context.minimum.message);
+  return has_levels;
 }
 
 }  // namespace tribofit

@@ -8,17 +8,10 @@
 #include <numeric>
 #include <utility>
 
-#include "cross_validation.hpp"
-#include "errors.hpp"
-#include "estimate.hpp"
-#include "influence.hpp"
+#include "fit_steps.hpp"
 #include "limits.hpp"
-#include "messages.hpp"
-#include "parameter_errors.hpp"
 #include "points.hpp"
-#include "profile.hpp"
 #include "stick.hpp"
-#include "systematic.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit {
@@ -152,13 +145,10 @@ void widen(double error, FitParameter& p) {
 }
 
 /// What the declared instruments make uncertain, and of one record the creep in stick.
-void fill_errors_of_records(const FitContext& context, const std::vector<double>& p, const std::vector<bool>& free,
-                            Fit& fit) {
-  const std::vector<double> systematic = systematic_errors(context.model, p, context.records, context.observations,
-                                                           context.instruments, free, context.by_extremes());
+void fill_errors_of_records(const FitContext& context, const std::vector<bool>& free, Fit& fit) {
+  const std::vector<double>& p = context.minimum.p;
+  const std::vector<double> systematic = systematic_errors(context, free), smoothing = smoothing_errors(context, free);
   for (std::size_t k = 0; k < p.size(); ++k) fit.parameters[k].systematic = systematic[k];
-  const std::vector<double> smoothing =
-      smoothing_errors(context.model, p, context.records, context.observations, free, context.by_extremes());
   for (std::size_t k = 0; k < p.size(); ++k) widen(smoothing[k], fit.parameters[k]);
   const Record& record = context.records[0];
   if (context.records.size() == 1 && context.model.acts_in_stick())
@@ -233,34 +223,34 @@ Fit fit_model(const FrictionModel& model, std::span<const Record> records, const
 
   FitContext context = context_of(model, records, observations, instruments, options);
   report_moved_starts(context, fit);
-  Solution solution = estimate(context, fit);
-  if (!solution.has_levels) return fit;
-  const std::vector<double>& p = solution.values();
+  if (!estimate(context, fit)) return fit;
+  const std::vector<double>& p = context.minimum.p;
 
-  if (!solution.residuals) solution.residuals.emplace(context.residuals(all_slips(observations)));
-  const ModelResiduals& residuals = *solution.residuals;
-  const NormalEquations equations = normal_equations(residuals, observations, p);
-  if (!equations.finite) {
+  if (!context.at_minimum) context.at_minimum.emplace(context.residuals(all_slips(observations)));
+  CycleEvidence evidence = evidence_at(*context.at_minimum, observations, p);
+  if (!evidence.finite) {
     return failed_fit(std::move(fit),
                       "the model is not finite on these data: an effect or formula divides by zero, "
                       "overflows or leaves its domain");
   }
-  const Freedom freedom = freedom_of(context, p, equations);
-  fill_parameters(context, solution, equations, freedom, fit);
+  // Several records have levels of their own, which are no noise that wanders from one to the next.
+  if (records.size() == 1) evidence.level = level_change(model, p), evidence.known_flicker = observations.flicker;
+  const Freedom freedom = freedom_of(context, evidence);
+  fill_parameters(context, evidence, freedom, fit);
 
   const SampleErrors errors =
       sample_errors(model, p, FullRecord(records, observations, model.needs()), observations, options.threads);
   fill_errors(errors, fit);
   fill_floor(context, p, errors, fit);
-  cross_validate(context, solution, equations, freedom.inside, errors, fit);
-  fill_errors_of_records(context, p, freedom.inside, fit);
+  cross_validate(context, evidence, freedom.inside, errors, fit);
+  fill_errors_of_records(context, freedom.inside, fit);
   if (!context.by_extremes()) {
-    const Eigen::MatrixXd inverse = inverse_over(equations.total, freedom.inside);
+    const Eigen::MatrixXd inverse = inverse_over(evidence.total, freedom.inside);
     widen_by_sampling(inverse, fit);
-    if (!context.is_look()) open_whole_ranges(residuals, context.given, inverse, fit);
-    if (options.profile) add_profiles(residuals, context.given, inverse, fit);
+    if (!context.is_look()) open_whole_ranges(*context.at_minimum, context.given, inverse, fit);
+    if (options.profile) add_profiles(*context.at_minimum, context.given, inverse, fit);
   }
-  add_messages(freedom.unconstrained, freedom.groups, fit);
+  add_messages(freedom, fit);
   return fit;
 }
 

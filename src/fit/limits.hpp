@@ -86,9 +86,9 @@ inline constexpr int kMostRefiningSteps = 12;
 /// A look takes one such step, of any length: where it leaves more than this many times what was left before it, it led
 /// astray along a flat valley and is not taken.
 inline constexpr double kRiseOfLook = 1.01;
-/// One of so many slips says first whether it does, so that derivatives are taken where they will be needed; odd, so
-/// that both directions take part.
-inline constexpr std::size_t kSlipsApart = 17;
+/// Passes over the slips, each with the scatter of break-away as the one before it leaves it. Where scatter is most of
+/// what a law leaves, three still hold something of the start.
+inline constexpr int kFewestPasses = 3, kMostPasses = 20;
 
 /// Slips before and after a change that it may touch; and the part of its time in which it may, twice that over which a
 /// change is smoothed to have a derivative.

@@ -1,11 +1,10 @@
-#include "messages.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "assessment.hpp"
+#include "fit_steps.hpp"
 #include "limits.hpp"
 
 namespace tribofit {
@@ -105,12 +104,11 @@ void add_extrapolated(Fit& fit) {
 
 }  // namespace
 
-void add_messages(const std::vector<bool>& unconstrained, const std::vector<std::vector<std::size_t>>& groups,
-                  Fit& fit) {
+void add_messages(const Freedom& freedom, Fit& fit) {
   add_condition(fit);
-  add_undetermined(groups, fit);
+  add_undetermined(freedom.groups, fit);
   add_correlations(fit);
-  add_bounded(unconstrained, fit);
+  add_bounded(freedom.unconstrained, fit);
   add_correlated(fit);
   add_extrapolated(fit);
 }

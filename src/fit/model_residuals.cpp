@@ -214,7 +214,7 @@ const std::vector<ModelResiduals::Block>* ModelResiduals::white_blocks(const dou
 
 bool ModelResiduals::evaluate(const double* p, double* residual, double* jacobian) const {
   if (jacobian == nullptr) {
-    if (!find_residual_blocks(p, cache_.without_slopes)) return false;
+    if (!compressed(p, false, cache_.without_slopes)) return false;
     const std::vector<double> squares = squares_of(cache_.without_slopes);
     std::fill_n(residual, count(), 0.0);
     for (std::size_t k = 0; k < squares.size(); ++k) residual[k * rows_per_slip()] = std::sqrt(squares[k]);
@@ -234,14 +234,8 @@ bool ModelResiduals::evaluate(const double* p, double* residual, double* jacobia
 
 std::vector<Eigen::MatrixXd> ModelResiduals::residual_blocks(const double* p) const {
   std::vector<Block> blocks;
-  if (!find_residual_blocks(p, blocks)) blocks.clear();
+  if (!compressed(p, false, blocks)) blocks.clear();
   return blocks;
-}
-
-bool ModelResiduals::find_residual_blocks(const double* p, std::vector<Block>& blocks) const {
-  if (!was_whitened_at(p)) return compressed(p, false, blocks);
-  compress_residuals_of_whitening(blocks);
-  return true;
 }
 
 Eigen::MatrixXd ModelResiduals::residual_block(std::size_t k, const double* p) const {
@@ -281,25 +275,19 @@ std::vector<ModelResiduals::Normal> ModelResiduals::normal_equations(const doubl
   return out;
 }
 
-std::vector<Eigen::MatrixXd> ModelResiduals::white_rows(const double* p) const {
-  const std::vector<Block>* blocks = white_blocks(p);
-  if (blocks == nullptr) return {};
-  std::vector<Eigen::MatrixXd> out;
-  for (const Block& block : *blocks) out.push_back(block.leftCols(block.cols() - 1));
-  return out;
-}
-
 std::vector<Eigen::MatrixXd> ModelResiduals::white_rows(const double* p, const FurtherColumns& further) const {
   std::vector<Block> blocks;
-  if (!compressed(p, true, blocks, further) || blocks.empty()) return {};
-  const Eigen::Index columns = blocks[0].cols() - 1;
-  const auto added = corrections(blocks);
-  std::vector<Eigen::MatrixXd> out;
-  for (std::size_t k = 0; k < blocks.size(); ++k) {
-    if (added.cols() > 0) add_to(blocks[k], static_cast<Eigen::Index>(k), added);
-    out.push_back(blocks[k].leftCols(columns));
+  if (!further) {
+    const std::vector<Block>* known = white_blocks(p);
+    if (known != nullptr) blocks = *known;
+  } else if (compressed(p, true, blocks, further)) {
+    const Eigen::MatrixXd added = corrections(blocks);
+    for (Eigen::Index k = 0; k < added.cols(); ++k) add_to(blocks[static_cast<std::size_t>(k)], k, added);
+  } else {
+    blocks.clear();
   }
-  return out;
+  for (Block& block : blocks) block.conservativeResize(Eigen::NoChange, block.cols() - 1);
+  return blocks;
 }
 
 std::vector<double> ModelResiduals::squares(const double* p) const {

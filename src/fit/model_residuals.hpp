@@ -65,12 +65,6 @@ class ModelResiduals final : public Residuals {
     std::vector<double> log_spread;  ///< log(1 + s^2 g'g/sigma^2) of every slip: what its likelihood pays for scatter
     double slow = 0;                 ///< t^2/sigma^2; 0: no noise raises whole slips
     double stick = 1;                ///< to which the squares of stick are weakened
-    /// Where it was made, and the residuals of every slip there, in rows as those of g; empty where they were not kept.
-    std::vector<double> p;
-    std::vector<Eigen::VectorXd> residuals;
-
-    void forget_residuals() { p.clear(), residuals.clear(); }
-
     bool any() const { return part > 0 || slow > 0; }
   };
 
@@ -101,8 +95,7 @@ class ModelResiduals final : public Residuals {
 
   /// Rows [J r] of every slip at p, whitened and compressed to at most as many rows as columns plus one; with further
   /// columns [J more r]. Empty where the model is not finite.
-  std::vector<Eigen::MatrixXd> white_rows(const double* p) const;
-  std::vector<Eigen::MatrixXd> white_rows(const double* p, const FurtherColumns& further) const;
+  std::vector<Eigen::MatrixXd> white_rows(const double* p, const FurtherColumns& further = {}) const;
 
   /// Sum of squares of every slip at p, break-away included, stick not, not whitened. Empty where the model is not
   /// finite.
@@ -116,8 +109,7 @@ class ModelResiduals final : public Residuals {
   }
 
   /// Residuals of every slip at p, compressed, and those of one slip (a place in slips()): what changes in few slips
-  /// needs to be looked at in those alone. Empty where the model is not finite. Costs little where the whitening kept
-  /// the residuals at p, which are then those of the model, observations and loss that it was made with.
+  /// needs to be looked at in those alone. Empty where the model is not finite.
   std::vector<Eigen::MatrixXd> residual_blocks(const double* p) const;
   Eigen::MatrixXd residual_block(std::size_t k, const double* p) const;
   /// Their sum of squares of every slip, whitened.
@@ -153,9 +145,7 @@ class ModelResiduals final : public Residuals {
     own_levels_ = own_levels && options_.loss == Loss::squares;
   }
   /// The whitening that the residuals at p call for; none where no slip begins with a break-away.
-  /// keep_residuals: they are kept in it. before: one that is no longer needed, whose memory is used again.
-  Whitening whitening_at(const double* p, bool keep_residuals = false) const;
-  Whitening whitening_at(const double* p, bool keep_residuals, Whitening before) const;
+  Whitening whitening_at(const double* p) const;
 
  private:
   /// Columns J (when asked for), r, g of one slip; compressed to as many rows as columns at the most.
@@ -195,15 +185,10 @@ class ModelResiduals final : public Residuals {
             bool plain = false) const;
   bool compressed(const double* p, bool with_jacobian, std::vector<Block>& blocks,
                   const FurtherColumns& further = {}) const;
-  bool was_evaluated(const double* p) const;    ///< by white_blocks(), and last
-  bool was_whitened_at(const double* p) const;  ///< the whitening kept the residuals at p
+  bool was_evaluated(const double* p) const;  ///< by white_blocks(), and last
   /// Blocks with the Jacobian, whitened; nullptr where the model is not finite. A search often asks once more for
   /// where another one ended.
   const std::vector<Block>* white_blocks(const double* p) const;
-  /// As residual_blocks(p), into `blocks`, whose memory is used again; false where the model is not finite.
-  bool find_residual_blocks(const double* p, std::vector<Block>& blocks) const;
-  /// The same from the residuals that the whitening kept.
-  void compress_residuals_of_whitening(std::vector<Block>& blocks) const;
   /// As compressed(), of the slips [begin, end).
   bool compress(std::size_t begin, std::size_t end, const double* p, bool with_jacobian, std::vector<Block>& blocks,
                 const FurtherColumns& further) const;

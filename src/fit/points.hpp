@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "influence.hpp"
+#include "cycle_evidence.hpp"
 #include "tribofit/fit/fit.hpp"
 
 // What is different where the data are steady points: they are independent, and each has its own weight.
@@ -26,7 +26,7 @@ SensorNoise noise_of_points(const Motion& motion, const Segmentation& segmentati
 /// divides each squared residual by one less its leverage (J. G. MacKinnon, H. White, J. Econometrics 29 (1985) 305,
 /// doi:10.1016/0304-4076(85)90158-7), with the degrees of freedom of R. M. Bell, D. F. McCaffrey, Survey Methodology 28
 /// (2002) 169. A parameter that hangs on few points takes one variance for all, s^2 (J'J)^-1 with n - p degrees of
-/// freedom. squares: of the weighed residuals. Each cycle of the equations is a point.
-Spread spread_of_points(const NormalEquations& equations, double squares, const std::vector<bool>& free);
+/// freedom. squares: of the weighed residuals. Each cycle of the evidence is a point.
+Spread spread_of_points(const CycleEvidence& evidence, double squares, const std::vector<bool>& free);
 
 }  // namespace tribofit

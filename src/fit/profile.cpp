@@ -1,35 +1,22 @@
-#include "profile.hpp"
-
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <limits>
 
+#include "fit_steps.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit {
 
 namespace {
 
-double residuals_cost(const ModelResiduals& residuals, const std::vector<double>& p) {
-  std::vector<double> r(residuals.count());
-  residuals.evaluate(p.data(), r.data(), nullptr);
-  double sum = 0;
-  for (const double x : r) sum += x * x;
-  return 0.5 * sum;
-}
-
 /// Sum of squares with parameter k held at `value`, the others refitted from `p` (updated).
 double profiled_squares(const ModelResiduals& residuals, const Bounds& bounds, std::size_t k, double value,
                         std::vector<double>& p) {
   Bounds held = bounds;
   p[k] = held.lower[k] = held.upper[k] = value;
-  SolverOptions quick;
-  quick.max_iterations = 50;
-  quick.relative_cost = 1e-9;
-  quick.relative_step = 1e-9;
-  quick.careful = false;
-  const SolverResult result = minimize(residuals, p, held.lower, held.upper, quick);
+  constexpr SolverOptions kSearch{.max_iterations = 50, .relative_step = 1e-9, .relative_cost = 1e-9, .careful = false};
+  const Minimum result = minimize(residuals, p, held.lower, held.upper, kSearch);
   p = result.p;
   return 2 * result.cost;
 }
@@ -37,7 +24,7 @@ double profiled_squares(const ModelResiduals& residuals, const Bounds& bounds, s
 /// Where the profile has risen by `rise` on the side `direction`; the bound where it does not reach that.
 double interval_end(const ModelResiduals& residuals, const Bounds& bounds, const std::vector<double>& best,
                     std::size_t k, double half_width, double rise, double direction) {
-  const double base = 2 * residuals_cost(residuals, best);
+  const double base = residuals.white_squares(best.data());
   const double limit = (direction < 0 ? best[k] - bounds.lower[k] : bounds.upper[k] - best[k]) / half_width;
   // u: distance from the best value in half-widths of the symmetric interval
   const auto excess = [&](double u) {
@@ -65,7 +52,7 @@ std::vector<ProfilePoint> profile_about(const ModelResiduals& residuals, const B
                                         const std::vector<double>& best, std::size_t k, double half_width,
                                         double rise) {
   constexpr int kSteps = 8;  // a side
-  const double base = 2 * residuals_cost(residuals, best);
+  const double base = residuals.white_squares(best.data());
   std::vector<ProfilePoint> points = {{best[k], 0}};
   for (const int side : {-1, 1}) {
     std::vector<double> p = best;

@@ -8,9 +8,7 @@
 #include <utility>
 
 #include "limits.hpp"
-#include "rate_state_errors.hpp"
-#include "rate_state_holds.hpp"
-#include "rate_state_together.hpp"
+#include "rate_state_steps.hpp"
 #include "statistics/linear_algebra.hpp"
 #include "tribofit/statistics/distributions.hpp"
 #include "tribofit/statistics/parallel.hpp"
@@ -39,26 +37,24 @@ class Analysis {
     }
     choose_states(data);
     out_.steps = chosen_.data.steps;
-    out_.states = chosen_.states;
-    out_.detrend = chosen_.detrend;
+    out_.states = chosen_.model.states;
+    out_.detrend = chosen_.model.detrend;
     out_.best = chosen_.best;
-    for (const LawFit& law : chosen_.laws) out_.fits.push_back(law.fit);
+    out_.fits = chosen_.fits;
     out_.messages.insert(out_.messages.end(), chosen_.messages.begin(), chosen_.messages.end());
     if (!out_.fitted()) {
       out_.reason = out_.fits[out_.best].messages.empty() ? "no fit converged" : out_.fits[out_.best].messages.front();
       return std::move(out_);
     }
     for (std::size_t s = 0; s < out_.steps.size(); ++s)
-      out_.steps[s].time_std_error = chosen_.best_law().fit.time_std_error[s];
+      out_.steps[s].time_std_error = chosen_.best_fit().time_std_error[s];
     for (const std::size_t held : chosen_.at_limit) out_.steps[held].time_std_error = std::nan("");
     if (chosen_.at_limit.empty())
-      out_.answer_p_value =
-          p_value_of_no_answer(chosen_.problem(chosen_.best), chosen_.best_law().solution, chosen_.best_law().fit);
+      out_.answer_p_value = p_value_of_no_answer(chosen_.problem(chosen_.best), best_minimum(), chosen_.best_fit());
     hold_out();
     compare_laws();
     if (options_.each_step && all().size() > 1) fit_each();
-    out_.healing =
-        healing_of(chosen_.data, chosen_.problem(chosen_.best), chosen_.best_law().solution.p, chosen_.best_law().fit);
+    out_.healing = healing_of(chosen_.data, chosen_.problem(chosen_.best), best_minimum().p, chosen_.best_fit());
     draw();
     return std::move(out_);
   }
@@ -74,25 +70,25 @@ class Analysis {
                                           [](const GivenParameter& g) { return g.name == "b_2" || g.name == "D_c2"; });
     chosen_ = with(options_.states != 0 ? options_.states : names_second ? 2 : 1);
     if (options_.states != 0 || names_second) return;
-    if (chosen_.fitted() && !(chosen_.best_law().fit.noise_time > 0)) return;  // noise is all it leaves
+    if (chosen_.best_fit().converged && !(chosen_.best_fit().noise_time > 0)) return;  // noise is all it leaves
     if (!chosen_.at_limit.empty()) {  // what steps at wrong times leave is no state
       out_.messages.emplace_back("a second state variable was not looked for, as times of steps are not known");
       return;
     }
     StepsTogether two = with(2);
-    if (!two.fitted()) return;
-    if (chosen_.fitted()) {
-      out_.states_p_value = p_value_of_more(chosen_.problem(chosen_.best), chosen_.best_law().solution,
-                                            two.problem(two.best), two.best_law().solution, two.best_law().fit, 2);
+    if (!two.best_fit().converged) return;
+    if (chosen_.best_fit().converged) {
+      out_.states_p_value = p_value_of_more(chosen_.problem(chosen_.best), best_minimum(), two.problem(two.best),
+                                            two.minima[two.best], two.best_fit(), 2);
       out_.second_state = SecondState::not_needed;
       if (!(out_.states_p_value < kChanceOfSecondState)) return;
     }
-    const std::vector<FitParameter>& found = two.best_law().fit.parameters;
+    const std::vector<FitParameter>& found = two.best_fit().parameters;
     const auto is_vague = [](const FitParameter& p) { return !(p.std_error < kVagueOfState * std::abs(p.value)); };
     // a too: without it, a state that falls over less than a sample's sliding stands for the direct effect.
     if (std::any_of(found.begin(), found.end() - 1, is_vague)) {
       out_.second_state = SecondState::not_determined;
-      if (chosen_.fitted())
+      if (chosen_.best_fit().converged)
         out_.messages.push_back(
             std::string("one state variable leaves more than noise, and these steps do not determine two: ") +
             (is_vague(found.front())
@@ -105,27 +101,24 @@ class Analysis {
   }
 
   std::vector<std::size_t> all() const { return chosen_.all(); }
-  RateStateProblem part(const LawFit& law, std::vector<std::size_t> steps,
-                        std::optional<std::size_t> first = std::nullopt) const {
-    return {chosen_.data, law.evolution, chosen_.states, chosen_.detrend, std::move(steps), first};
-  }
+  const Minimum& best_minimum() const { return chosen_.minima[chosen_.best]; }
 
   /// Each step in turn predicted by the fit of the others, its own constant and line aside.
   void hold_out() {
     const RateStateData& data = chosen_.data;
     if (all().size() < 2) return;
-    for (std::size_t i = 0; i < chosen_.laws.size(); ++i) {
-      const LawFit& law = chosen_.laws[i];
-      if (!law.fit.converged) continue;
+    for (std::size_t i = 0; i < chosen_.fits.size(); ++i) {
+      if (!chosen_.fits[i].converged) continue;
+      const RateStateModel model = chosen_.model_of(i);
       std::vector<double> squares(all().size()), counts(all().size());
       run_tasks(all().size(), options_.threads, [&](std::size_t s) {
         std::vector<std::size_t> others = all();
         others.erase(others.begin() + static_cast<std::ptrdiff_t>(s));
-        const RateStateSolution found = refine(part(law, others, 0), law.solution.p, chosen_.unknowns);
-        const RateStateProblem held = part(law, {s}, 0);
-        std::vector<double> residual(held.count());
-        const bool valid = found.found && held.evaluate(found.p.data(), residual.data(), nullptr);
-        squares[s] = valid ? std::inner_product(residual.begin(), residual.end(), residual.begin(), 0.0) : std::nan("");
+        const Minimum found = refine({data, model, others, 0}, chosen_.minima[i].p, chosen_.unknowns);
+        const RateStateProblem held(data, model, {s}, 0);
+        Eigen::VectorXd residual(static_cast<Eigen::Index>(held.count()));
+        const bool valid = found.converged && held.evaluate(found.p.data(), residual.data(), nullptr);
+        squares[s] = valid ? residual.squaredNorm() : std::nan("");
         for (std::size_t k = data.begins[s]; k < data.end_of(s); ++k) {
           counts[s] += data.count[k];
           squares[s] += data.scatter[k];
@@ -139,22 +132,20 @@ class Analysis {
   /// Both laws have as many parameters. Were the other one true, the likelihood of the best would exceed its own by a
   /// factor of e^x with a probability of e^-x at most (Markov's inequality).
   void compare_laws() {
-    if (chosen_.laws.size() != 2 || !out_.fits[0].converged || !out_.fits[1].converged) return;
+    if (chosen_.fits.size() != 2 || !out_.fits[0].converged || !out_.fits[1].converged) return;
     const std::size_t first = chosen_.best, second = 1 - first;
-    const double below =
-        log_likelihood_below(chosen_.problem(first), chosen_.laws[first].solution, chosen_.problem(second),
-                             chosen_.laws[second].solution, chosen_.laws[first].fit);
+    const double below = log_likelihood_below(chosen_.problem(first), chosen_.minima[first], chosen_.problem(second),
+                                              chosen_.minima[second], chosen_.fits[first]);
     if (std::isfinite(below)) out_.law_p_value = std::exp(-std::max(0.0, below));
   }
 
   void fit_each() {
     out_.each.resize(all().size());
     run_tasks(all().size(), options_.threads, [&](std::size_t s) {
-      const LawFit& best = chosen_.best_law();
+      const RateStateModel model = chosen_.model_of(chosen_.best);
       RateStateUnknowns own = chosen_.unknowns;
-      own.starts.insert(own.starts.begin(), best.solution.p);
-      const RateStateSolution found = search(chosen_.data, best.evolution, chosen_.states, chosen_.detrend, {s}, own);
-      out_.each[s] = fit_from(part(best, {s}), own, found);
+      own.starts.insert(own.starts.begin(), best_minimum().p);
+      out_.each[s] = fit_from(RateStateProblem(chosen_.data, model, {s}), own, search(chosen_.data, model, {s}, own));
       add_messages(out_.each[s]);
       out_.each[s].step = s;
     });
@@ -163,7 +154,7 @@ class Analysis {
 
   /// Whether a, b and D_c differ from step to step by more than their errors.
   void compare_steps() {
-    const std::size_t n = 1 + 2 * chosen_.states, rows = n + 1;
+    const std::size_t n = 1 + 2 * chosen_.model.states, rows = n + 1;
     Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
     double squares = 0, freedom = std::numeric_limits<double>::infinity();
@@ -196,12 +187,11 @@ class Analysis {
   void draw() {
     std::vector<Eigen::VectorXd> drawn;
     const RateStateData& data = chosen_.data;
-    for (std::size_t i = 0; i < chosen_.laws.size(); ++i) {
+    for (std::size_t i = 0; i < chosen_.fits.size(); ++i) {
       drawn.emplace_back();
-      if (!chosen_.laws[i].fit.converged) continue;
+      if (!chosen_.fits[i].converged) continue;
       Eigen::VectorXd residual(static_cast<Eigen::Index>(data.size()));
-      if (chosen_.problem(i).evaluate(chosen_.laws[i].solution.p.data(), residual.data(), nullptr))
-        drawn.back() = residual;
+      if (chosen_.problem(i).evaluate(chosen_.minima[i].p.data(), residual.data(), nullptr)) drawn.back() = residual;
     }
     for (const std::size_t s : all()) {
       RateStateCurve curve;
@@ -214,7 +204,7 @@ class Analysis {
         curve.displacement.push_back(data.displacement[i]);
         curve.friction.push_back(data.friction[i]);
         curve.model.push_back(model(out_.best));
-        if (chosen_.laws.size() == 2 && drawn[1 - out_.best].size() > 0) curve.other.push_back(model(1 - out_.best));
+        if (chosen_.fits.size() == 2 && drawn[1 - out_.best].size() > 0) curve.other.push_back(model(1 - out_.best));
       }
       out_.curves.push_back(std::move(curve));
     }

@@ -1,4 +1,4 @@
-#include "rate_state_data.hpp"
+#include "rate_state_steps.hpp"
 
 #include <fmt/format.h>
 

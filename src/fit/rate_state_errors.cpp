@@ -1,5 +1,3 @@
-#include "rate_state_errors.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "fit_steps.hpp"
 #include "limits.hpp"
 #include "rate_state_noise.hpp"
 #include "tribofit/statistics/distributions.hpp"
@@ -39,8 +38,7 @@ std::vector<Eigen::Index> take_values(const RateStateUnknowns& unknowns, const s
     parameter.start = unknowns.value(k, unknowns.starts.front()[k]);
     parameter.profile_lower95 = parameter.profile_upper95 = kUnknown;
     const bool held = unknowns.lower[k] == unknowns.upper[k];
-    const double near = 1e-6 * std::abs(unknowns.upper[k] - unknowns.lower[k]);
-    parameter.at_bound = !held && (p[k] <= unknowns.lower[k] + near || p[k] >= unknowns.upper[k] - near);
+    parameter.at_bound = on_bound(p[k], unknowns.lower[k], unknowns.upper[k]);
     parameter.lower95 = held ? parameter.value : -kUnbounded;
     parameter.upper95 = held ? parameter.value : kUnbounded;
     parameter.std_error = held ? 0 : kUnbounded;
@@ -125,18 +123,89 @@ void say_excess(const FitErrors& found, double distance, const std::vector<Eigen
   }
 }
 
+/// By how much a logarithm is off within its 95 % interval; not finite where that reaches where there is none.
+template <class F>
+double half_width(const F& logarithm, const std::vector<double>& p, double quantile,
+                  const Eigen::Map<const RowMatrix>& covariance) {
+  Eigen::VectorXd gradient(static_cast<Eigen::Index>(p.size()));
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    constexpr double kPart = 1e-5;
+    const double h = kPart * std::max(std::abs(p[i]), 1e-3);
+    std::vector<double> up = p, down = p;
+    up[i] += h, down[i] -= h;
+    gradient(static_cast<Eigen::Index>(i)) = (logarithm(up) - logarithm(down)) / (2 * h);
+  }
+  return quantile * std::sqrt(gradient.dot(covariance * gradient));
+}
+
+/// k_c, and k over it with the interval that errors of ln(k/k_c) make: where friction falls beyond doubt, and where
+/// that of two states rises and k_c is known to a factor.
+void set_critical_stiffness(const std::vector<double>& p, double quantile,
+                            const Eigen::Map<const RowMatrix>& covariance, RateStateFit& fit) {
+  const bool falls = fit.rate_dependence_upper95 < 0;
+  const bool rises = fit.rate_dependence_lower95 > 0;
+  if (!falls && !(rises && fit.states > 1)) return;
+  const auto critical = [&](const std::vector<double>& at) {
+    return std::log(critical_stiffness(parameters_from(at.data(), fit.states), fit.states));
+  };
+  const auto ratio = [&](const std::vector<double>& at) {
+    return std::log(parameters_from(at.data(), fit.states).stiffness) - critical(at);
+  };
+  const double half = half_width(ratio, p, quantile, covariance);
+  if (!std::isfinite(half) ||
+      (rises && !(2 * half_width(critical, p, quantile, covariance) < std::log(kWidestInterval))))
+    return;
+  fit.critical_stiffness = std::exp(critical(p));
+  fit.stiffness_ratio = std::exp(ratio(p));
+  fit.stiffness_ratio_lower95 = fit.stiffness_ratio * std::exp(-half);
+  fit.stiffness_ratio_upper95 = fit.stiffness_ratio * std::exp(half);
+}
+
+/// a - b, and whether sliding is stable on this machine, from the values and their covariance.
+void set_stability(const std::vector<double>& p, double freedom, RateStateFit& fit) {
+  const auto n = static_cast<Eigen::Index>(p.size());
+  const Eigen::Map<const RowMatrix> covariance(fit.covariance.data(), n, n);
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
+  gradient(0) = 1;
+  double value = p[0];
+  for (std::size_t i = 0; i < fit.states; ++i) {
+    gradient(static_cast<Eigen::Index>(1 + 2 * i)) = -1;
+    value -= p[1 + 2 * i];
+  }
+  for (std::size_t i = 0; i < 1 + fit.states; ++i) {
+    if (!fit.parameters[i == 0 ? 0 : 2 * i - 1].at_bound) continue;
+    fit.rate_dependence = {kUnknown, kUnknown, freedom};
+    fit.rate_dependence_lower95 = fit.rate_dependence_upper95 = kUnknown;
+    return;
+  }
+  const double quantile = t_quantile_95(freedom);
+  fit.rate_dependence = {value, std::sqrt(gradient.dot(covariance * gradient)), freedom};
+  fit.rate_dependence_lower95 = value - quantile * fit.rate_dependence.std_error;
+  fit.rate_dependence_upper95 = value + quantile * fit.rate_dependence.std_error;
+  set_critical_stiffness(p, quantile, covariance, fit);
+}
+
+void set_correlations(RateStateFit& fit) {
+  const std::size_t n = fit.parameters.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 1; j < n; ++j) {
+      const double value = fit.covariance[i * n + j] / std::sqrt(fit.covariance[i * n + i] * fit.covariance[j * n + j]);
+      if (std::abs(value) > kStrongCorrelation) fit.correlations.push_back({i, j, value});
+    }
+  }
+}
+
 }  // namespace
 
-RateStateFit fit_from(const RateStateProblem& problem, const RateStateUnknowns& unknowns,
-                      const RateStateSolution& solution) {
+RateStateFit fit_from(const RateStateProblem& problem, const RateStateUnknowns& unknowns, const Minimum& minimum) {
   RateStateFit fit;
-  fit.evolution = problem.evolution();
-  fit.states = problem.states();
-  if (!solution.found) {
-    fit.messages.push_back("the fit failed: " + solution.message);
+  fit.evolution = problem.model().evolution;
+  fit.states = problem.model().states;
+  if (!minimum.converged) {
+    fit.messages.push_back("the fit failed: " + minimum.message);
     return fit;
   }
-  const FitErrors found(problem, solution.p);
+  const FitErrors found(problem, minimum.p);
   if (!found.valid()) {
     fit.messages.emplace_back("the fit failed: the simulated sliding runs away at its minimum");
     return fit;
@@ -144,7 +213,7 @@ RateStateFit fit_from(const RateStateProblem& problem, const RateStateUnknowns& 
   fit.converged = true;
   fit.samples = static_cast<std::size_t>(found.count());
   fit.rmse = std::sqrt(found.sum_of_squares() / found.count());
-  const std::vector<Eigen::Index> free = take_values(unknowns, solution.p, fit);
+  const std::vector<Eigen::Index> free = take_values(unknowns, minimum.p, fit);
   std::vector<Eigen::Index> fitted = free;
   fitted.insert(fitted.end(), found.times().begin(), found.times().end());
   const WanderingNoise noise = found.noise(fitted);
@@ -153,23 +222,22 @@ RateStateFit fit_from(const RateStateProblem& problem, const RateStateUnknowns& 
   fit.noise_time = noise.time;
   const Eigen::MatrixXd influence = found.influence(fitted);
   const Errors errors = found.errors_of(influence, noise);
-  set_errors(unknowns, solution.p, free, errors, fit);
+  set_errors(unknowns, minimum.p, free, errors, fit);
   set_errors_of_times(found, problem, errors, free.size(), fit);
-  set_stability(solution.p, fit.degrees_of_freedom, fit);
+  set_stability(minimum.p, fit.degrees_of_freedom, fit);
   set_correlations(fit);
   set_own_values(found, problem.steps().size(), fitted, influence, noise, fit);
-  say_excess(found, adapting_distance(problem.data(), problem.states(), fit), fitted, fit);
+  say_excess(found, adapting_distance(problem.data(), problem.model().states, fit), fitted, fit);
   return fit;
 }
 
-double p_value_of_no_answer(const RateStateProblem& problem, const RateStateSolution& solution,
-                            const RateStateFit& fit) {
+double p_value_of_no_answer(const RateStateProblem& problem, const Minimum& minimum, const RateStateFit& fit) {
   const bool is_noise = fit.noise_white > 0 && !fit.lacks.value_or(false) &&
                         !(fit.noise_time > 0 && fit.noise_slow > kMuchWander * fit.noise_white);
   const auto free = std::count_if(fit.parameters.begin(), fit.parameters.end(),
                                   [](const FitParameter& p) { return p.std_error > 0 && !p.at_bound; });
   if (!is_noise || free == 0) return kUnknown;
-  const FitErrors found(problem, solution.p);
+  const FitErrors found(problem, minimum.p);
   if (!found.valid()) return kUnknown;
   const WanderingNoise noise = {fit.noise_white, fit.noise_slow, fit.noise_time};
   const auto values = static_cast<double>(free) + static_cast<double>(found.turns().size());
@@ -177,13 +245,40 @@ double p_value_of_no_answer(const RateStateProblem& problem, const RateStateSolu
   return more > 0 ? f_p_value(more / values, values, kLargeFreedom) : kUnknown;
 }
 
-double log_likelihood_below(const RateStateProblem& best, const RateStateSolution& best_solution,
-                            const RateStateProblem& other, const RateStateSolution& other_solution,
-                            const RateStateFit& fit) {
-  const FitErrors one(best, best_solution.p), two(other, other_solution.p);
+double log_likelihood_below(const RateStateProblem& best, const Minimum& best_minimum, const RateStateProblem& other,
+                            const Minimum& other_minimum, const RateStateFit& fit) {
+  const FitErrors one(best, best_minimum.p), two(other, other_minimum.p);
   if (!one.valid() || !two.valid() || !(fit.noise_white > 0)) return kUnknown;
   const WanderingNoise noise = {fit.noise_white, fit.noise_slow, fit.noise_time};
   return 0.5 * (two.whitened(noise) - one.whitened(noise));
+}
+
+void add_messages(RateStateFit& fit) {
+  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
+    const FitParameter& p = fit.parameters[k];
+    const std::string& name = p.parameter.name;
+    const double si = p.parameter.si;
+    if (p.at_bound) {
+      const bool upper = p.value / si > 0.5 * (p.parameter.lower + p.parameter.upper);
+      fit.messages.push_back(
+          name == "k" && upper
+              ? fmt::format("k is not resolved: the machine is stiffer than the samples behind the steps can show; "
+                            "sample faster there, or hold k by --bounds")
+              : fmt::format("{} ended at its {} bound, {:.4g} {}", name, upper ? "upper" : "lower", p.value / si,
+                            p.parameter.unit));
+    } else if (!p.determined) {
+      fit.messages.push_back(
+          fmt::format("{} is not known from these data: its 95 % interval reaches from {:.3g} to "
+                      "{:.3g} {}",
+                      name, p.lower95 / si, p.upper95 / si, p.parameter.unit));
+    }
+  }
+  for (const Correlation& c : fit.correlations) {
+    fit.messages.push_back(
+        fmt::format("{} and {} are correlated by {:.3f}: the data fix a combination of them better "
+                    "than either",
+                    fit.parameters[c.first].parameter.name, fit.parameters[c.second].parameter.name, c.value));
+  }
 }
 
 }  // namespace tribofit::fit

@@ -1,9 +1,9 @@
-#include "rate_state_holds.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "limits.hpp"
+#include "rate_state_steps.hpp"
+#include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit::fit {
@@ -12,22 +12,12 @@ namespace {
 
 /// Slope of y over x by least squares, its error from the scatter about the line; NaN for fewer than three.
 Estimate slope_of(const std::vector<double>& x, const std::vector<double>& y) {
-  const std::size_t n = x.size();
-  if (n < 3) return {std::nan(""), std::nan(""), 1};
-  double mean_x = 0, mean_y = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    mean_x += x[i] / static_cast<double>(n);
-    mean_y += y[i] / static_cast<double>(n);
-  }
-  double xx = 0, xy = 0, yy = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    xx += (x[i] - mean_x) * (x[i] - mean_x);
-    xy += (x[i] - mean_x) * (y[i] - mean_y);
-    yy += (y[i] - mean_y) * (y[i] - mean_y);
-  }
-  if (!(xx > 0)) return {std::nan(""), std::nan(""), 1};
-  const double freedom = static_cast<double>(n - 2), slope = xy / xx;
-  return {slope, std::sqrt(std::max(0.0, yy - slope * xy) / freedom / xx), freedom};
+  const StraightLine line = fit_line(x, y);
+  if (x.size() < 3 || !(line.squares > 0)) return {std::nan(""), std::nan(""), 1};
+  double left = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) left += std::pow(y[i] - line.at(x[i]), 2);
+  const auto freedom = static_cast<double>(x.size() - 2);
+  return {line.slope, std::sqrt(left / freedom / line.squares), freedom};
 }
 
 /// Mean of friction less the model over values [begin, end), with the error of white noise.

@@ -6,8 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "rate_state_problem.hpp"
-#include "rate_state_times.hpp"
+#include "rate_state_steps.hpp"
 #include "statistics/wandering_noise.hpp"
 
 namespace tribofit::fit {

@@ -1,4 +1,4 @@
-#include "rate_state_problem.hpp"
+#include "rate_state_steps.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -31,9 +31,9 @@ RateStateParameters<double> parameters_from(const double* p, std::size_t states)
   return unpacked(p, states);
 }
 
-RateStateProblem::RateStateProblem(const RateStateData& data, StateEvolution evolution, std::size_t states,
-                                   Detrend detrend, std::vector<std::size_t> steps, std::optional<std::size_t> first)
-    : data_(data), evolution_(evolution), states_(states), detrend_(detrend), steps_(std::move(steps)), first_(first) {
+RateStateProblem::RateStateProblem(const RateStateData& data, const RateStateModel& model,
+                                   std::vector<std::size_t> steps, std::optional<std::size_t> first)
+    : data_(data), model_(model), steps_(std::move(steps)), first_(first) {
   for (const std::size_t s : steps_) {
     first_rows_.push_back(values_.size());
     for (std::size_t i = data.begins[s]; i < data.end_of(s); ++i) values_.push_back(i);
@@ -64,12 +64,12 @@ RateStateProblem::RateStateProblem(const RateStateData& data, StateEvolution evo
 Eigen::MatrixXd RateStateProblem::design_of(std::size_t k) const {
   const VelocityStep& step = data_.steps[steps_[k]];
   const auto n = static_cast<Eigen::Index>(first_rows_[k + 1] - first_rows_[k]);
-  Eigen::MatrixXd out(n, detrend_ == Detrend::none ? 1 : 2);
+  Eigen::MatrixXd out(n, model_.detrend == Detrend::none ? 1 : 2);
   for (Eigen::Index i = 0; i < n; ++i) {
     const std::size_t value = values_[first_rows_[k] + static_cast<std::size_t>(i)];
     out(i, 0) = 1;
-    if (detrend_ == Detrend::time) out(i, 1) = data_.time[value] - step.time;
-    if (detrend_ == Detrend::displacement) out(i, 1) = data_.displacement[value] - step.displacement;
+    if (model_.detrend == Detrend::time) out(i, 1) = data_.time[value] - step.time;
+    if (model_.detrend == Detrend::displacement) out(i, 1) = data_.displacement[value] - step.displacement;
   }
   return out;
 }
@@ -86,14 +86,15 @@ void RateStateProblem::weigh(RowMatrix& rows) const {
 
 template <class T, std::size_t kStates>
 bool RateStateProblem::simulate(const T* p, T* friction) const {
-  return oscillator::slide_under<T, kStates>(evolution_, unpacked(p, kStates), data_.reference_speed, phases_, times_,
-                                             friction);
+  return oscillator::slide_under<T, kStates>(model_.evolution, unpacked(p, kStates), data_.reference_speed, phases_,
+                                             times_, friction);
 }
 
 bool RateStateProblem::response(const double* p, Eigen::VectorXd& friction, RowMatrix* jacobian) const {
   friction.resize(static_cast<Eigen::Index>(rows_));
   const auto without = [&]<std::size_t kStates>() { return simulate<double, kStates>(p, friction.data()); };
-  if (jacobian == nullptr) return states_ == 1 ? without.template operator()<1>() : without.template operator()<2>();
+  if (jacobian == nullptr)
+    return model_.states == 1 ? without.template operator()<1>() : without.template operator()<2>();
   const auto with = [&]<std::size_t kStates>() {
     constexpr std::size_t n = 2 + 2 * kStates;
     using T = Dual<n>;
@@ -109,7 +110,7 @@ bool RateStateProblem::response(const double* p, Eigen::VectorXd& friction, RowM
     }
     return true;
   };
-  return states_ == 1 ? with.template operator()<1>() : with.template operator()<2>();
+  return model_.states == 1 ? with.template operator()<1>() : with.template operator()<2>();
 }
 
 bool RateStateProblem::evaluate(const double* p, double* residual, double* jacobian) const {

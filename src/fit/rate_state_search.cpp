@@ -1,10 +1,9 @@
-#include "rate_state_search.hpp"
+#include "rate_state_steps.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -179,15 +178,6 @@ void apply_given(const std::vector<GivenParameter>& given, RateStateUnknowns& un
   }
 }
 
-SolverOptions short_search(int iterations) {
-  SolverOptions options;
-  options.max_iterations = iterations;
-  options.relative_step = 1e-5;
-  options.relative_cost = 1e-6;
-  options.careful = false;
-  return options;
-}
-
 }  // namespace
 
 double RateStateUnknowns::value(std::size_t k, double searched) const {
@@ -233,76 +223,68 @@ RateStateUnknowns unknowns_of(const RateStateData& data, std::size_t states, con
   return out;
 }
 
-RateStateSolution refine(const RateStateProblem& problem, const std::vector<double>& start,
-                         const RateStateUnknowns& unknowns) {
-  SolverOptions options;
-  options.max_iterations = 100;
-  options.relative_step = 1e-9;
-  options.relative_cost = 1e-10;
-  options.careful = false;
-  const SolverResult found = minimize(problem, start, unknowns.lower, unknowns.upper, options);
-  return {found.p, found.cost, std::isfinite(found.cost) && found.converged, found.message};
+Minimum refine(const RateStateProblem& problem, const std::vector<double>& start, const RateStateUnknowns& unknowns) {
+  constexpr SolverOptions kSearch{
+      .max_iterations = 100, .relative_step = 1e-9, .relative_cost = 1e-10, .careful = false};
+  Minimum found = minimize(problem, start, unknowns.lower, unknowns.upper, kSearch);
+  found.converged = found.converged && std::isfinite(found.cost);
+  return found;
 }
 
-RateStateSolution search(const RateStateData& data, StateEvolution evolution, std::size_t states, Detrend detrend,
-                         const std::vector<std::size_t>& steps, const RateStateUnknowns& unknowns) {
-  constexpr int kFirst = 12, kSecond = 60;
-  constexpr std::size_t kDescents = 8, kKept = 3;
+Minimum search(const RateStateData& data, const RateStateModel& model, const std::vector<std::size_t>& steps,
+               const RateStateUnknowns& unknowns) {
   const RateStateData few = thinned(data, kValuesOfStepSearch);
-  const RateStateProblem coarse(few, evolution, states, detrend, steps), fine(data, evolution, states, detrend, steps);
-  std::vector<SolverResult> found;
-  std::vector<double> residual(coarse.count());
+  const RateStateProblem coarse(few, model, steps);
+  std::vector<Minimum> found;
+  Eigen::VectorXd residual(static_cast<Eigen::Index>(coarse.count()));
   for (const std::vector<double>& start : unknowns.starts) {
     stop_point();
     if (!coarse.evaluate(start.data(), residual.data(), nullptr)) continue;  // it runs away from here
-    SolverResult result;
-    result.p = start;
-    result.cost = 0.5 * std::inner_product(residual.begin(), residual.end(), residual.begin(), 0.0);
-    found.push_back(std::move(result));
+    found.push_back({.p = start, .cost = 0.5 * residual.squaredNorm(), .message = {}});
   }
-  const auto by_cost = [](const SolverResult& x, const SolverResult& y) { return x.cost < y.cost; };
+  const auto by_cost = [](const Minimum& x, const Minimum& y) { return x.cost < y.cost; };
   const auto keep_best = [&](std::size_t most, int iterations) {
     std::stable_sort(found.begin(), found.end(), by_cost);
     found.resize(std::min(most, found.size()));
-    for (SolverResult& result : found) {
-      SolverResult lower = minimize(coarse, result.p, unknowns.lower, unknowns.upper, short_search(iterations));
-      if (std::isfinite(lower.cost) && lower.cost <= result.cost) result = std::move(lower);
+    for (Minimum& known : found) {
+      Minimum lower =
+          minimize(coarse, known.p, unknowns.lower, unknowns.upper,
+                   {.max_iterations = iterations, .relative_step = 1e-5, .relative_cost = 1e-6, .careful = false});
+      if (std::isfinite(lower.cost) && lower.cost <= known.cost) known = std::move(lower);
     }
   };
-  keep_best(kDescents, kFirst);
-  keep_best(kKept, kSecond);
-  if (found.empty()) return {{}, 0, false, "from every start the simulated sliding ran away"};
+  keep_best(8, 12);
+  keep_best(3, 60);
+  if (found.empty()) return {.p = {}, .message = "from every start the simulated sliding ran away"};
   const auto best = std::min_element(found.begin(), found.end(), by_cost);
-  RateStateSolution out = refine(fine, best->p, unknowns);
-  if (states == 2 && unknowns.states_alike && out.p.size() > 4 && out.p[2] > out.p[4]) {
+  Minimum out = refine(RateStateProblem(data, model, steps), best->p, unknowns);
+  if (model.states == 2 && unknowns.states_alike && out.p.size() > 4 && out.p[2] > out.p[4]) {
     std::swap(out.p[1], out.p[3]);
     std::swap(out.p[2], out.p[4]);
   }
   return out;
 }
 
-RateStateSolution search_together(const RateStateData& data, StateEvolution evolution, std::size_t states,
-                                  Detrend detrend, const std::vector<std::size_t>& steps,
-                                  const RateStateUnknowns& unknowns) {
-  RateStateSolution together = search(data, evolution, states, detrend, steps, unknowns);
+Minimum search_together(const RateStateData& data, const RateStateModel& model, const std::vector<std::size_t>& steps,
+                        const RateStateUnknowns& unknowns) {
+  Minimum together = search(data, model, steps, unknowns);
   if (steps.size() < 2) return together;
   const std::vector<std::size_t> first = {steps.front()};
-  RateStateSolution grown = search(data, evolution, states, detrend, first, unknowns);
-  if (!grown.found) return together;
+  Minimum grown = search(data, model, first, unknowns);
+  if (!grown.converged) return together;
   const auto values_of = [&](const std::vector<std::size_t>& some) {
     std::size_t values = 0;
     for (const std::size_t s : some) values += data.end_of(s) - data.begins[s];
     return static_cast<double>(values);
   };
   const double alone = grown.cost / values_of(first);
-  if (together.found && together.cost / values_of(steps) <= kFarFromMinimum * alone) return together;
+  if (together.converged && together.cost / values_of(steps) <= kFarFromMinimum * alone) return together;
   for (std::size_t count = 2; count <= steps.size(); ++count) {
     const std::vector<std::size_t> some(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(count));
-    const RateStateSolution next = refine(RateStateProblem(data, evolution, states, detrend, some), grown.p, unknowns);
-    if (next.found || count == steps.size()) grown = next;
+    Minimum next = refine(RateStateProblem(data, model, some), grown.p, unknowns);
+    if (next.converged || count == steps.size()) grown = std::move(next);
   }
-  const bool is_better = grown.found && (!together.found || grown.cost < together.cost);
-  return is_better ? grown : together;
+  return grown.converged && (!together.converged || grown.cost < together.cost) ? grown : together;
 }
 
 }  // namespace tribofit::fit

@@ -1,4 +1,4 @@
-#include "rate_state_times.hpp"
+#include "rate_state_steps.hpp"
 
 #include <algorithm>
 #include <array>
@@ -78,23 +78,23 @@ Eigen::VectorXd response_by_time(const RateStateProblem& problem, const std::vec
   return out;
 }
 
-MovedSteps refine_step_times(RateStateData& data, StateEvolution evolution, std::size_t states, Detrend detrend,
-                             const RateStateUnknowns& unknowns, RateStateSolution& solution) {
+MovedSteps refine_step_times(RateStateData& data, const RateStateModel& model, const RateStateUnknowns& unknowns,
+                             Minimum& minimum) {
   std::vector<std::size_t> all(data.steps.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   const std::vector<Turn> free = free_turns(data);
   const std::vector<LoadPointPhase> stated = data.phases;
-  for (int round = 0; round < kMostRounds && !free.empty() && solution.found; ++round) {
-    const RateStateProblem problem(data, evolution, states, detrend, all);
-    const auto rows = static_cast<Eigen::Index>(problem.count()), n = static_cast<Eigen::Index>(solution.p.size());
+  for (int round = 0; round < kMostRounds && !free.empty() && minimum.converged; ++round) {
+    const RateStateProblem problem(data, model, all);
+    const auto rows = static_cast<Eigen::Index>(problem.count()), n = static_cast<Eigen::Index>(minimum.p.size());
     Eigen::VectorXd residual(rows);
     RowMatrix jacobian(rows, n);
-    if (!problem.evaluate(solution.p.data(), residual.data(), jacobian.data())) break;
+    if (!problem.evaluate(minimum.p.data(), residual.data(), jacobian.data())) break;
     Eigen::MatrixXd design(rows, n + static_cast<Eigen::Index>(free.size()));
     design.leftCols(n) = jacobian;
     RowMatrix by_times(rows, static_cast<Eigen::Index>(free.size()));
     for (std::size_t k = 0; k < free.size(); ++k) {
-      const Eigen::VectorXd column = response_by_time(problem, solution.p, free[k]);
+      const Eigen::VectorXd column = response_by_time(problem, minimum.p, free[k]);
       if (column.size() == 0) return {};
       by_times.col(static_cast<Eigen::Index>(k)) = column;
     }
@@ -111,7 +111,7 @@ MovedSteps refine_step_times(RateStateData& data, StateEvolution evolution, std:
       moved = std::max(moved, std::abs(to - now) / data.steps[free[k].step].interval);
       set_time(data, free[k], to);
     }
-    solution = refine(RateStateProblem(data, evolution, states, detrend, all), solution.p, unknowns);
+    minimum = refine(RateStateProblem(data, model, all), minimum.p, unknowns);
     if (moved < 0.02) break;
   }
   MovedSteps out;

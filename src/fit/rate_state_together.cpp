@@ -1,5 +1,3 @@
-#include "rate_state_together.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,8 +8,7 @@
 #include <utility>
 
 #include "limits.hpp"
-#include "rate_state_errors.hpp"
-#include "rate_state_times.hpp"
+#include "rate_state_steps.hpp"
 #include "tribofit/statistics/distributions.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
@@ -22,10 +19,9 @@ class Together {
  public:
   Together(const RateStateData& data, LoadPointSource source, const RateStateOptions& options, std::size_t states)
       : source_(source), options_(options) {
-    out_.states = states;
+    out_.model = {.states = states, .detrend = options.detrend};
     out_.data = data;
     out_.unknowns = unknowns_of(data, states, options.given);
-    out_.detrend = options.detrend;
   }
 
   StepsTogether run() {
@@ -36,8 +32,8 @@ class Together {
   }
 
  private:
-  RateStateSolution searched(StateEvolution evolution, Detrend detrend) const {
-    return search_together(out_.data, evolution, out_.states, detrend, out_.all(), out_.unknowns);
+  Minimum searched(StateEvolution evolution, Detrend detrend) const {
+    return search_together(out_.data, {evolution, out_.model.states, detrend}, out_.all(), out_.unknowns);
   }
 
   /// The line is one over what leaves less; over the displacement where both leave the same. The law is not known yet:
@@ -47,15 +43,15 @@ class Together {
                                            ? std::vector{Detrend::displacement, Detrend::time}
                                            : std::vector{options_.detrend};
     const std::size_t laws = options_.evolutions.size();
-    std::vector<RateStateSolution> found(lines.size() * laws);
+    std::vector<Minimum> found(lines.size() * laws);
     run_tasks(found.size(), options_.threads,
               [&](std::size_t i) { found[i] = searched(options_.evolutions[i % laws], lines[i / laws]); });
     std::size_t chosen = 0;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < found.size(); ++i) {
-      if (found[i].found && found[i].cost < least) least = found[i].cost, chosen = i / laws;
+      if (found[i].converged && found[i].cost < least) least = found[i].cost, chosen = i / laws;
     }
-    out_.detrend = lines[chosen];
+    out_.model.detrend = lines[chosen];
     const auto first = found.begin() + static_cast<std::ptrdiff_t>(chosen * laws);
     searched_.assign(first, first + static_cast<std::ptrdiff_t>(laws));
   }
@@ -72,26 +68,23 @@ class Together {
     const std::size_t turns = free_turns(free).size();
     if (turns == 0) return;
     std::vector<RateStateData> moved(searched_.size(), free);
-    std::vector<RateStateSolution> behind = searched_;
+    std::vector<Minimum> behind = searched_;
     std::vector<MovedSteps> moves(searched_.size());
     run_tasks(searched_.size(), options_.threads, [&](std::size_t i) {
-      if (behind[i].found)
-        moves[i] =
-            refine_step_times(moved[i], options_.evolutions[i], out_.states, out_.detrend, out_.unknowns, behind[i]);
+      if (behind[i].converged) moves[i] = refine_step_times(moved[i], model_of(i), out_.unknowns, behind[i]);
     });
     double least = std::numeric_limits<double>::infinity();  // of any law, its steps where they are said to be
-    for (const RateStateSolution& one : searched_) {
-      if (one.found) least = std::min(least, one.cost);
+    for (const Minimum& one : searched_) {
+      if (one.converged) least = std::min(least, one.cost);
     }
     std::size_t best = searched_.size();
     for (std::size_t i = 0; i < searched_.size(); ++i) {
-      if (!behind[i].found || !(behind[i].cost < std::min(least, searched_[i].cost))) continue;
+      if (!behind[i].converged || !(behind[i].cost < std::min(least, searched_[i].cost))) continue;
       least = behind[i].cost;
       best = i;
     }
     if (best == searched_.size()) return;
-    if (measured && !is_beyond_chance(moved[best], options_.evolutions[best], searched_[best], behind[best], turns))
-      return;
+    if (measured && !is_beyond_chance(moved[best], model_of(best), searched_[best], behind[best], turns)) return;
     out_.data = std::move(moved[best]);
     out_.unknowns.starts.insert(out_.unknowns.starts.begin(), behind[best].p);
     searched_.clear();
@@ -113,36 +106,39 @@ class Together {
         out_.data.steps[moves.at_limit.front()].time));
   }
 
-  bool is_beyond_chance(const RateStateData& moved, StateEvolution evolution, const RateStateSolution& before,
-                        const RateStateSolution& behind, std::size_t free) const {
-    if (!behind.found) return false;
-    const RateStateProblem fewer(out_.data, evolution, out_.states, out_.detrend, out_.all());
+  RateStateModel model_of(std::size_t law) const {
+    return {options_.evolutions[law], out_.model.states, out_.model.detrend};
+  }
+
+  bool is_beyond_chance(const RateStateData& moved, const RateStateModel& model, const Minimum& before,
+                        const Minimum& behind, std::size_t free) const {
+    if (!behind.converged) return false;
+    const RateStateProblem fewer(out_.data, model, out_.all());
     const RateStateProblem more = fewer.with_data(moved);
     const RateStateFit fit = fit_from(more, out_.unknowns, behind);
     return fit.converged && p_value_of_more(fewer, before, more, behind, fit, free) < kChanceOfMovedStep;
   }
 
   void fit_laws() {
-    out_.laws.resize(options_.evolutions.size());
-    run_tasks(out_.laws.size(), options_.threads, [&](std::size_t i) {
-      LawFit& law = out_.laws[i];
-      law.evolution = options_.evolutions[i];
-      law.solution = searched_.empty() ? searched(law.evolution, out_.detrend) : searched_[i];
-      law.fit = fit_from(out_.problem(i), out_.unknowns, law.solution);
-      add_messages(law.fit);
+    const std::size_t laws = options_.evolutions.size();
+    out_.minima.resize(laws);
+    out_.fits.resize(laws);
+    run_tasks(laws, options_.threads, [&](std::size_t i) {
+      out_.minima[i] =
+          searched_.empty() ? searched(options_.evolutions[i], out_.model.detrend) : std::move(searched_[i]);
+      out_.fits[i] = fit_from(RateStateProblem(out_.data, model_of(i), out_.all()), out_.unknowns, out_.minima[i]);
+      add_messages(out_.fits[i]);
     });
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < out_.laws.size(); ++i) {
-      if (!out_.laws[i].fit.converged || !(out_.laws[i].solution.cost < least)) continue;
-      least = out_.laws[i].solution.cost;
-      out_.best = i;
+    for (std::size_t i = 0; i < laws; ++i) {
+      if (out_.fits[i].converged && out_.minima[i].cost < least) least = out_.minima[i].cost, out_.best = i;
     }
   }
 
   LoadPointSource source_;
   const RateStateOptions& options_;
   StepsTogether out_;
-  std::vector<RateStateSolution> searched_;  ///< of the laws; empty: the steps were moved since
+  std::vector<Minimum> searched_;  ///< of the laws; empty: the steps were moved since
 };
 
 }  // namespace
@@ -158,10 +154,9 @@ StepsTogether fit_together(const RateStateData& data, LoadPointSource source, co
   return Together(data, source, options, states).run();
 }
 
-double p_value_of_more(const RateStateProblem& fewer, const RateStateSolution& fewer_solution,
-                       const RateStateProblem& more, const RateStateSolution& more_solution, const RateStateFit& fit,
-                       std::size_t values) {
-  const double below = log_likelihood_below(more, more_solution, fewer, fewer_solution, fit);
+double p_value_of_more(const RateStateProblem& fewer, const Minimum& fewer_minimum, const RateStateProblem& more,
+                       const Minimum& more_minimum, const RateStateFit& fit, std::size_t values) {
+  const double below = log_likelihood_below(more, more_minimum, fewer, fewer_minimum, fit);
   if (!std::isfinite(below)) return std::nan("");
   const auto compared = static_cast<double>(values);
   return f_p_value(2 * std::max(0.0, below) / compared, compared, kLargeFreedom);

@@ -1,10 +1,9 @@
-#include "refinement.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "fit_steps.hpp"
 #include "limits.hpp"
 #include "statistics/linear_algebra.hpp"
 
@@ -27,33 +26,23 @@ std::optional<Linearisation> linearise(const ModelResiduals& residuals, const st
 }
 
 /// Parameters that a step may move: those that the data feel and that no bound holds back.
-std::vector<std::size_t> movable(const Linearisation& here, const Bounds& bounds, const std::vector<double>& p) {
+std::vector<Eigen::Index> movable(const Linearisation& here, const Bounds& bounds, const std::vector<double>& p) {
   const Eigen::VectorXd slope = here.jacobian.transpose() * here.residual;
   const Eigen::VectorXd norms = here.jacobian.colwise().squaredNorm().transpose();
-  std::vector<std::size_t> out;
+  std::vector<Eigen::Index> out;
   for (std::size_t k = 0; k < p.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     const bool held_back = (p[k] <= bounds.lower[k] && slope(i) > 0) || (p[k] >= bounds.upper[k] && slope(i) < 0);
-    if (bounds.lower[k] < bounds.upper[k] && norms(i) > 0 && !held_back) out.push_back(k);
+    if (bounds.lower[k] < bounds.upper[k] && norms(i) > 0 && !held_back) out.push_back(i);
   }
-  return out;
-}
-
-/// One of every kSlipsApart slips.
-std::vector<std::size_t> few_of(const std::vector<std::size_t>& slips) {
-  std::vector<std::size_t> out;
-  for (std::size_t k = 0; k < slips.size(); k += kSlipsApart) out.push_back(slips[k]);
   return out;
 }
 
 /// Takes one step, within the bounds; its length in standard errors, NaN where there is none. values: behind the rows.
 double take_gauss_newton_step(const Linearisation& here, const Bounds& bounds, double values, std::vector<double>& p) {
-  const std::vector<std::size_t> free = movable(here, bounds, p);
+  const std::vector<Eigen::Index> free = movable(here, bounds, p);
   if (free.empty()) return 0;
-  Eigen::MatrixXd design(here.jacobian.rows(), static_cast<Eigen::Index>(free.size()));
-  for (std::size_t j = 0; j < free.size(); ++j) {
-    design.col(static_cast<Eigen::Index>(j)) = here.jacobian.col(static_cast<Eigen::Index>(free[j]));
-  }
+  Eigen::MatrixXd design = here.jacobian(Eigen::all, free);
   const Eigen::VectorXd scale = design.colwise().norm().transpose().cwiseInverse();
   design *= scale.asDiagonal();
   const Eigen::VectorXd change = scale.asDiagonal() * least_squares(design, -here.residual);
@@ -63,7 +52,7 @@ double take_gauss_newton_step(const Linearisation& here, const Bounds& bounds, d
   double longest = 0;
   bool moves = false;
   for (std::size_t j = 0; j < free.size(); ++j) {
-    const std::size_t k = free[j];
+    const auto k = static_cast<std::size_t>(free[j]);
     const auto i = static_cast<Eigen::Index>(j);
     const double to = std::clamp(p[k] + change(i), bounds.lower[k], bounds.upper[k]), length = std::abs(to - p[k]);
     if (!std::isfinite(change(i))) return std::numeric_limits<double>::quiet_NaN();
@@ -77,21 +66,13 @@ double take_gauss_newton_step(const Linearisation& here, const Bounds& bounds, d
 
 }  // namespace
 
-void find_change(FitContext& context, const ChangePoint& change, Bounds& held, std::vector<double>& p) {
-  // Slips at levels of their own would hide a change that is misplaced.
-  const ModelResiduals residuals = context.residuals(all_slips(context.observations), false);
-  p[change.time] = best_change(change, residuals, context.observations, context.bounds, p, context.evaluation.threads);
-  held.lower[change.time] = held.upper[change.time] = p[change.time];
-  context.whitening.forget_residuals();
-}
-
 bool refine(FitContext& context, const std::optional<ChangePoint>& change, Bounds& held, std::vector<double>& p) {
   const std::vector<std::size_t> all = all_slips(context.observations);
   const ModelResiduals plain(context.model, context.observations, all, context.evaluation);
   const std::vector<double> begin = p;
   double last = std::numeric_limits<double>::infinity();
   for (int step = 0; step < kMostRefiningSteps; ++step) {
-    context.whiten_at(plain, p, change.has_value());
+    context.whiten_at(plain, p);
     if (change) find_change(context, *change, held, p);
     const std::optional<Linearisation> here = linearise(context.residuals(all), p);
     if (!here) break;
@@ -109,7 +90,7 @@ ModelResiduals refine_look(FitContext& context, const std::optional<ChangePoint>
                            std::vector<double>& p) {
   const std::vector<std::size_t> all = all_slips(context.observations);
   const ModelResiduals plain(context.model, context.observations, all, context.evaluation);
-  context.whiten_at(plain, p, change.has_value());
+  context.whiten_at(plain, p);
   if (change) find_change(context, *change, held, p);
   ModelResiduals residuals = context.residuals(all);
   const std::optional<Linearisation> here = linearise(residuals, p);
@@ -117,13 +98,11 @@ ModelResiduals refine_look(FitContext& context, const std::optional<ChangePoint>
   std::vector<double> next = p;
   const double length = take_gauss_newton_step(*here, held, static_cast<double>(context.observations.size()), next);
   if (!std::isfinite(length)) return residuals;
-  const auto leads_astray = [&](const ModelResiduals& to, const ModelResiduals& from) {
-    return !(to.squares_with_scatter(next.data()) <= kRiseOfLook * from.squares_with_scatter(p.data()));
-  };
   ModelResiduals there = residuals;  // holds the Jacobian at `next`, which is needed then if the step is taken
-  const ModelResiduals few = residuals.of_slips(few_of(all));
-  if (!leads_astray(few, few)) linearise(there, next);  // most likely it is that one
-  if (leads_astray(there, residuals)) return residuals;
+  linearise(there, next);
+  const bool leads_astray =
+      !(there.squares_with_scatter(next.data()) <= kRiseOfLook * residuals.squares_with_scatter(p.data()));
+  if (leads_astray) return residuals;
   p = std::move(next);
   return there;
 }

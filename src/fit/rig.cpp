@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "cycle_evidence.hpp"
 #include "force_balance.hpp"
-#include "influence.hpp"
 #include "kinematics/corrections.hpp"
 #include "limits.hpp"
 #include "rig_messages.hpp"

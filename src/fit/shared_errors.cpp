@@ -1,48 +1,46 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
-#include "fit_context.hpp"
+#include "fit_steps.hpp"
+#include "limits.hpp"
 #include "points.hpp"
 #include "shared_parts.hpp"
 #include "statistics/linear_algebra.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
-namespace tribofit::sharing {
+namespace tribofit {
+
+bool SharingTest::is_refused() const {
+  return p_value < kChanceOfRefusal && ratio > 1;
+}
+
+namespace sharing {
 
 namespace {
 
-double squares_of(const Part& part) {
-  const auto n = part.member->residuals.count();
-  std::vector<double> rows(n);
-  part.member->residuals.evaluate(part.p.data(), rows.data(), nullptr);
-  return part.member->weight * std::inner_product(rows.begin(), rows.end(), rows.begin(), 0.0);
-}
-
 /// What one record's own noise does to its parameters and, through its common ones, to all common values.
 struct Contribution {
-  Spread spread;       ///< of its parameters, by its own cycles
-  MatrixXd to_common;  ///< from the values it takes to all of them
-  MatrixXd common;     ///< covariance of all common values
+  Spread spread;    ///< of its parameters, by its own cycles
+  MatrixXd common;  ///< covariance of all common values
 };
 
-Contribution contribution_of(const Problem& problem, const Part& part, const Common& common) {
+Contribution contribution_of(const Part& part, const Common& common) {
   Contribution out;
-  NormalEquations equations = part.equations;
+  CycleEvidence evidence = part.evidence;
   const auto count = static_cast<Index>(part.common.size());
   MatrixXd known(count, count);
   if (count > 0) {
-    known = inverse_of_symmetric(block_of(common.inverse, part.values, part.values));
-    add_to(equations.total, part.common, known - part.reduced(part.equations.total));
+    known = inverse_of_symmetric(common.inverse(part.values, part.values));
+    evidence.total(part.common, part.common) += known - part.knows();
   }
+  const double squares = part.member->weight * part.member->residuals.white_squares(part.p.data());
   out.spread = part.member->record.is_points
-                   ? spread_of_points(equations, squares_of(part), part.free)
-                   : spread_of(influence(equations, part.free), slow_levels_of(problem, part, equations));
-  out.to_common = MatrixXd::Zero(common.inverse.rows(), count);
-  for (Index j = 0; j < count; ++j) out.to_common.col(j) = common.inverse.col(part.values[at(j)]);
-  if (count > 0) out.to_common = out.to_common * known;
-  out.common = out.to_common * block_of(out.spread.covariance, part.common, part.common) * out.to_common.transpose();
+                   ? spread_of_points(evidence, squares, part.free)
+                   : spread_of(influence(evidence, part.free), slow_levels_of(part, evidence));
+  const MatrixXd to_common =
+      common.inverse(Eigen::all, part.values) * known;  // from the values it takes to all of them
+  out.common = to_common * out.spread.covariance(part.common, part.common) * to_common.transpose();
   return out;
 }
 
@@ -108,10 +106,8 @@ std::vector<SharedEstimate> common_estimates(const Problem& problem, const std::
 /// The parameters of one record; common ones are those of all. covariance: of all common values.
 std::vector<SharedEstimate> estimates_of(const Problem& problem, const Part& part, const Contribution& contribution,
                                          const MatrixXd& covariance, const std::vector<SharedEstimate>& common) {
-  const MatrixXd follow =
-      part.own_inverse(part.equations.total) * block_of(part.equations.total, part.own, part.common);
-  const MatrixXd elsewhere =
-      block_of(covariance, part.values, part.values) - block_of(contribution.common, part.values, part.values);
+  const MatrixXd follow = part.own_inverse() * part.evidence.total(part.own, part.common);
+  const MatrixXd elsewhere = (covariance - contribution.common)(part.values, part.values);
   const VectorXd through_common = (follow * elsewhere * follow.transpose()).diagonal();
   double freedom_of_common = std::numeric_limits<double>::infinity();
   for (const Index c : part.values) freedom_of_common = std::min(freedom_of_common, common[at(c)].degrees_of_freedom);
@@ -155,10 +151,10 @@ void add_errors(const Problem& problem, const std::vector<double>& values, Recor
   std::vector<Contribution> contributions;
   MatrixXd covariance = MatrixXd::Zero(common.inverse.rows(), common.inverse.cols());
   for (const Part& part : parts) {
-    contributions.push_back(contribution_of(problem, part, common));
+    contributions.push_back(contribution_of(part, common));
     covariance += contributions.back().common;
   }
-  out.test = test_of(problem, parts, common);
+  out.test = test_of(parts, common);
   out.common = common_estimates(problem, values, parts, contributions);
   widen_by_differences(out.test, out.common);
   for (std::size_t c = 0; c < out.common.size(); ++c)
@@ -171,4 +167,6 @@ void add_errors(const Problem& problem, const std::vector<double>& values, Recor
   out.held_out_rmse_alone = alone.error.held_out_rmse;
 }
 
-}  // namespace tribofit::sharing
+}  // namespace sharing
+
+}  // namespace tribofit

@@ -5,7 +5,6 @@
 #include <limits>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "model_residuals.hpp"
@@ -78,7 +77,7 @@ struct Member {
   Member& operator=(const Member&) = delete;
 
   void whiten_at(const std::vector<double>& p) {
-    whitening = residuals.whitening_at(p.data(), false, std::exchange(whitening, {}));
+    whitening = residuals.whitening_at(p.data());
     residuals.whiten(whitening, true);  // which forgets what was whitened otherwise
   }
 

@@ -3,7 +3,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "influence.hpp"
+#include "cycle_evidence.hpp"
 #include "shared_fit.hpp"
 
 // Records that share values, at one set of values: what each of them knows of the common ones.
@@ -18,17 +18,11 @@ inline std::size_t at(Index k) {
   return static_cast<std::size_t>(k);
 }
 
-/// Rows and columns of a matrix, and rows of a vector.
-MatrixXd block_of(const MatrixXd& matrix, const std::vector<Index>& rows, const std::vector<Index>& columns);
-VectorXd rows_of(const VectorXd& all, const std::vector<Index>& rows);
-/// Adds a block to these rows and columns of a matrix.
-void add_to(MatrixXd& all, const std::vector<Index>& index, const MatrixXd& part);
-
-/// One record at one set of values: its normal equations, weighted, and which of its parameters are whose.
+/// One record at one set of values: its normal evidence, weighted, and which of its parameters are whose.
 struct Part {
   const Member* member = nullptr;
   std::vector<double> p;
-  NormalEquations equations;
+  CycleEvidence evidence;
   std::vector<bool> free;          ///< estimated: of its own and common ones
   std::vector<bool> own_free;      ///< those of its own
   std::vector<bool> open;          ///< of its own, of which only combinations are determined
@@ -36,10 +30,10 @@ struct Part {
   std::vector<Index> values;       ///< the common values that `common` take
 
   /// Inverse of the curvature of the record's own values.
-  MatrixXd own_inverse(const MatrixXd& curvature) const;
+  MatrixXd own_inverse() const { return inverse_over(evidence.total, own_free)(own, own); }
   /// What the record knows of the common values, beside its own ones, and how it pulls at them.
-  MatrixXd reduced(const MatrixXd& curvature) const;
-  VectorXd reduced(const VectorXd& gradient) const;
+  MatrixXd knows() const;
+  VectorXd pull(const VectorXd& gradient) const;
 };
 
 Part part_at(const Problem& problem, const Member& member, std::vector<double> p);
@@ -57,10 +51,10 @@ void drop_open(const Common& common, Part& part);
 
 /// Slow noise of the level, where the record shows it without any model or shares nothing, as a fit of it alone has it:
 /// what else differs between records that share is tested.
-SlowLevels slow_levels_of(const Problem& problem, const Part& part, const NormalEquations& equations);
+SlowLevels slow_levels_of(const Part& part, const CycleEvidence& evidence);
 
 /// Whether the records allow what they share.
-SharingTest test_of(const Problem& problem, const std::vector<Part>& parts, const Common& common);
+SharingTest test_of(const std::vector<Part>& parts, const Common& common);
 
 /// Held-out squares of each cycle of all records, over the variance of its record, and the error of all of them: of the
 /// records together, and of each by itself where its own fit ended.

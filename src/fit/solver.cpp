@@ -105,7 +105,7 @@ class StopAtBound : public ceres::IterationCallback {
 /// are large they may shorten slowly, by nearly the same part each time: what is still to come is then taken with them
 /// (D. G. Anderson, J. ACM 12 (1965) 547, doi:10.1145/321296.321305, with one step before).
 void polish(const Residuals& problem, const std::vector<std::size_t>& free, std::span<const double> lower,
-            std::span<const double> upper, SolverResult& result) {
+            std::span<const double> upper, Minimum& result) {
   constexpr int kSteps = 30;
   const auto rows = static_cast<Eigen::Index>(problem.count()), all = static_cast<Eigen::Index>(result.p.size());
   Eigen::VectorXd residual(rows), last_change, last_step;
@@ -149,7 +149,7 @@ void polish(const Residuals& problem, const std::vector<std::size_t>& free, std:
 
 /// One descent from a start.
 struct Descent {
-  SolverResult result;
+  Minimum result;
   bool ran_away = false;               ///< a parameter ended where no residual feels it (see Cost)
   std::vector<std::size_t> held_back;  ///< by bounds where it ended
 };
@@ -157,7 +157,7 @@ struct Descent {
 Descent descend(const Residuals& problem, std::span<const double> start, const std::vector<std::size_t>& free,
                 std::span<const double> lower, std::span<const double> upper, const SolverOptions& options) {
   Descent out;
-  SolverResult& result = out.result;
+  Minimum& result = out.result;
   result.p.assign(start.begin(), start.end());
   std::vector<double> x;
   for (const std::size_t k : free) x.push_back(start[k]);
@@ -190,8 +190,8 @@ Descent descend(const Residuals& problem, std::span<const double> start, const s
 }
 
 /// What is returned where there is nothing to solve, or too little to solve it with.
-SolverResult unsolved(const Residuals& problem, std::span<const double> start, bool nothing_free) {
-  SolverResult result;
+Minimum unsolved(const Residuals& problem, std::span<const double> start, bool nothing_free) {
+  Minimum result;
   result.p.assign(start.begin(), start.end());
   std::vector<double> r(problem.count());
   const bool finite = problem.evaluate(result.p.data(), r.data(), nullptr);
@@ -216,8 +216,8 @@ void finish_beside_bounds(const Residuals& problem, std::vector<std::size_t> fre
 
 }  // namespace
 
-SolverResult minimize(const Residuals& problem, std::span<const double> start, std::span<const double> lower,
-                      std::span<const double> upper, const SolverOptions& options) {
+Minimum minimize(const Residuals& problem, std::span<const double> start, std::span<const double> lower,
+                 std::span<const double> upper, const SolverOptions& options) {
   const QuietLogging quiet;
   std::vector<std::size_t> free;
   for (std::size_t k = 0; k < start.size(); ++k) {
@@ -234,20 +234,6 @@ SolverResult minimize(const Residuals& problem, std::span<const double> start, s
   }
   finish_beside_bounds(problem, std::move(free), lower, upper, options, found);
   return std::move(found.result);
-}
-
-std::vector<double> covariance_of_independent(const Residuals& problem, std::span<const double> p) {
-  const auto rows = static_cast<Eigen::Index>(problem.count()), columns = static_cast<Eigen::Index>(p.size());
-  Eigen::VectorXd residual(rows);
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> jacobian(rows, columns);
-  problem.evaluate(p.data(), residual.data(), jacobian.data());
-  // QR of the scaled Jacobian: forming J'J would cost half the digits.
-  const Eigen::VectorXd scale = jacobian.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
-  const Eigen::MatrixXd scaled = jacobian * scale.asDiagonal();
-  const Eigen::MatrixXd inverse = scale.asDiagonal() * inverse_triangular_factor(scaled);
-  const double variance = residual.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, rows - columns));
-  const Eigen::MatrixXd covariance = variance * inverse * inverse.transpose();
-  return {covariance.data(), covariance.data() + covariance.size()};
 }
 
 }  // namespace tribofit

@@ -1,5 +1,3 @@
-#include "systematic.hpp"
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -7,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-#include "influence.hpp"
+#include "fit_steps.hpp"
 #include "limits.hpp"
 
 namespace tribofit {
@@ -290,27 +288,26 @@ Eigen::VectorXd moved_levels(const Observations& observations, const Shift& shif
 }
 
 /// By how much each parameter follows the shifts, which are independent.
-std::vector<double> errors_of(const std::vector<Shift>& shifts, const FrictionModel& model,
-                              const std::vector<double>& p, const Observations& observations,
-                              const std::vector<bool>& free, bool published) {
+std::vector<double> errors_of(const std::vector<Shift>& shifts, const FitContext& context,
+                              const std::vector<bool>& free) {
+  const std::vector<double>& p = context.minimum.p;
+  const Observations& observations = context.observations;
   std::vector<double> squares(p.size(), 0.0);
   if (shifts.empty()) return squares;
   if (!std::all_of(shifts.begin(), shifts.end(), [](const Shift& shift) { return shift.known(); }))
     return std::vector<double>(p.size(), kUnknown);
   const std::vector<std::size_t> all = all_slips(observations);
   const auto gradient = [&](const Observations& at, Eigen::MatrixXd* curvature) {
-    const NormalEquations equations = normal_equations(ModelResiduals(model, at, all), at, p);
-    Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(p.size()));
-    for (const Eigen::VectorXd& g : equations.gradient) sum += g;
-    if (curvature != nullptr) *curvature = equations.total;
-    return sum;
+    const CycleEvidence evidence = evidence_at(ModelResiduals(context.model, at, all), at, p);
+    if (curvature != nullptr) *curvature = evidence.total;
+    return sum_of(evidence).gradient;
   };
   Eigen::MatrixXd curvature;
   const Eigen::VectorXd base = gradient(observations, &curvature);
   const Eigen::MatrixXd inverse = inverse_over(curvature, free);
   for (const Shift& shift : shifts) {
-    const Eigen::VectorXd levels =
-        published ? moved_levels(observations, shift, p) : Eigen::VectorXd(Eigen::VectorXd::Zero(curvature.rows()));
+    Eigen::VectorXd levels = Eigen::VectorXd::Zero(curvature.rows());
+    if (context.by_extremes()) levels = moved_levels(observations, shift, p);
     const Eigen::VectorXd pull = gradient(moved(observations, shift), nullptr) - base;
     const Eigen::VectorXd step = levels - inverse * (pull + curvature * levels);
     for (std::size_t k = 0; k < p.size(); ++k) squares[k] += std::pow(step(static_cast<Eigen::Index>(k)), 2);
@@ -321,32 +318,29 @@ std::vector<double> errors_of(const std::vector<Shift>& shifts, const FrictionMo
 
 }  // namespace
 
-std::vector<double> systematic_errors(const FrictionModel& model, const std::vector<double>& p,
-                                      std::span<const Record> records, const Observations& observations,
-                                      const Instruments& instruments, const std::vector<bool>& free, bool published) {
+std::vector<double> systematic_errors(const FitContext& context, const std::vector<bool>& free) {
   std::vector<Shift> shifts;
-  const Sources sources{records, observations, instruments};
+  const Sources sources{context.records, context.observations, context.instruments};
   add_disc_shifts(sources, shifts);
   add_vibrometer_shifts(sources, shifts);
   add_undone_shifts(sources, shifts);
   add_delay_shifts(sources, shifts);
   add_friction_shifts(sources, shifts);
-  return errors_of(shifts, model, p, observations, free, published);
+  return errors_of(shifts, context, free);
 }
 
-std::vector<double> smoothing_errors(const FrictionModel& model, const std::vector<double>& p,
-                                     std::span<const Record> records, const Observations& observations,
-                                     const std::vector<bool>& free, bool published) {
+std::vector<double> smoothing_errors(const FitContext& context, const std::vector<bool>& free) {
+  const std::span<const Record> records = context.records;
   std::vector<Shift> shifts;
   for (std::size_t r = 0; r < records.size(); ++r) {
     if (!(records[r].motion->smoothing > 0)) continue;
     shifts.push_back({.break_away = std::vector<double>(records.size(), 0.0)});
     shifts.back().break_away[r] = kPartOfSmoothing * records[r].motion->smoothing;
-    if (observations.acceleration.empty()) continue;
+    if (context.observations.acceleration.empty()) continue;
     shifts.push_back({.acceleration = std::vector<double>(records.size(), 0.0)});
     shifts.back().acceleration[r] = kSmoothedAcceleration;
   }
-  return errors_of(shifts, model, p, observations, free, published);
+  return errors_of(shifts, context, free);
 }
 
 }  // namespace tribofit

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -116,12 +115,7 @@ void whiten_break_away(const std::vector<Products>& slips, const Observations& o
 
 }  // namespace
 
-ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p, bool keep_residuals) const {
-  return whitening_at(p, keep_residuals, {});
-}
-
-ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p, bool keep_residuals, Whitening before) const {
-  if (slips_.size() < observations_.slips.size()) before = {};  // nothing of the others stays
+ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
   Whitening out;
   out.g.resize(observations_.slips.size());
   out.level.assign(observations_.slips.size(), 0.0);
@@ -129,10 +123,7 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p, bool kee
   const bool breaks_away =
       std::any_of(slips_.begin(), slips_.end(), [this](std::size_t s) { return observations_.slips[s].from_stick; });
   if (!breaks_away) return out;
-  if (before.g.size() == out.g.size()) out.g = std::move(before.g);
-  std::vector<Products> all(slips_.size());
-  std::vector<Eigen::VectorXd> kept = std::move(before.residuals);
-  kept.resize(keep_residuals ? observations_.slips.size() : 0);
+  std::vector<Products> slips(slips_.size());
   const bool finite = in_parts([&](const ModelResiduals& own, std::size_t begin, std::size_t end) {
     Workspace workspace;
     Block block;
@@ -145,10 +136,9 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p, bool kee
       g = block.col(0).head(rows);
       const auto r = block.col(1).head(rows);
       find_level_column(range, u);
-      all[k] = {
+      slips[k] = {
           slips_[k],      static_cast<double>(rows), g.squaredNorm(), g.dot(u), u.squaredNorm(), g.dot(r), u.dot(r),
           r.squaredNorm()};
-      if (keep_residuals) kept[slips_[k]] = r;
     }
     return true;
   });
@@ -156,31 +146,11 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p, bool kee
     out.g.assign(observations_.slips.size(), {});
     return out;
   }
-  if (keep_residuals) out.p.assign(p, p + parameter_count()), out.residuals = std::move(kept);
-  std::vector<Products> slips;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(slips), [](const Products& slip) { return slip.gg > 0; });
+  std::erase_if(slips, [](const Products& slip) { return !(slip.gg > 0); });
   out.slow = slow_noise_of_slips(slips, observations_);
   for (Products& slip : slips) slip = slip.whitened(out.slow);
   whiten_break_away(slips, observations_, out);
   return out;
-}
-
-bool ModelResiduals::was_whitened_at(const double* p) const {
-  return whitening_ != nullptr && !own_levels_ && weights_.empty() && whitening_->p.size() == parameter_count() &&
-         std::equal(whitening_->p.begin(), whitening_->p.end(), p);
-}
-
-void ModelResiduals::compress_residuals_of_whitening(std::vector<Block>& blocks) const {
-  blocks.resize(slips_.size());
-  Block block;
-  Eigen::VectorXd level;
-  for (std::size_t i = 0; i < slips_.size(); ++i) {
-    const std::size_t k = slips_[i];
-    block.resize(whitening_->residuals[k].size(), 2);
-    block << whitening_->residuals[k], whitening_->g[k];
-    if (whitening_->slow > 0) whiten_level(observations_.slips[k], level, block);
-    triangular_factor(block, blocks[i]);
-  }
 }
 
 void ModelResiduals::find_level_column(const Observations::SlipObservation& range, Eigen::VectorXd& level) const {

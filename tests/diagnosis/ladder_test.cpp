@@ -9,7 +9,7 @@
 
 #include "../fit/synthetic.hpp"
 #include "diagnosis/findings.hpp"
-#include "diagnosis/ladder_steps.hpp"
+#include "diagnosis/ladder.hpp"
 
 namespace {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "../fit/synthetic.hpp"
-#include "diagnosis/base_law.hpp"
 #include "diagnosis/candidates.hpp"
+#include "diagnosis/ladder.hpp"
 #include "diagnosis/probes.hpp"
 #include "diagnosis/trial.hpp"
 #include "fit/spectral_lines.hpp"

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "fit/change_point.hpp"
 #include "fit/errors.hpp"
+#include "fit/fit_steps.hpp"
 #include "fit/model_residuals.hpp"
 #include "synthetic.hpp"
 #include "tribofit/fit/fit.hpp"
@@ -106,71 +106,6 @@ TEST(NormalEquations, AreTheSameBehindAnEvaluationAndWithoutOne) {
   EXPECT_LT((gradient - j.transpose() * r).norm(), 1e-6 * (j.transpose().cwiseAbs() * r.cwiseAbs()).norm());
 }
 
-/// Squares of slips by the residuals that the whitening kept are those that are evaluated; elsewhere, and with slips at
-/// their own levels, those kept are not used.
-TEST(SquaresOfSlips, AreTheSameWhereTheWhiteningKeptResiduals) {
-  const LagOffItsTruth lag;
-  const auto& [model, record, observations, p] = lag;
-  const ModelResiduals plain(model, observations, all_slips(observations));
-  ModelResiduals::Whitening kept = plain.whitening_at(p.data(), true), not_kept = plain.whitening_at(p.data());
-  ASSERT_GT(kept.part, 0);
-  ASSERT_EQ(kept.residuals.size(), observations.slips.size());
-  for (const auto& [slow, own_levels] : {std::pair(0.0, false), {1e-3, false}, {0.0, true}}) {
-    kept.slow = not_kept.slow = slow;
-    ModelResiduals knows(plain), evaluates(plain);
-    knows.whiten(kept, own_levels), evaluates.whiten(not_kept, own_levels);
-    for (const double times : {1.0, 1.1}) {
-      std::vector<double> at = p;
-      at[1] *= times;
-      const auto known = knows.squares_of(knows.residual_blocks(at.data()));
-      const auto truth = evaluates.squares_of(evaluates.residual_blocks(at.data()));
-      ASSERT_EQ(known.size(), observations.slips.size());
-      for (std::size_t k = 0; k < truth.size(); ++k)
-        EXPECT_NEAR(known[k], truth[k], 1e-10 * truth[k]) << slow << own_levels;
-    }
-  }
-}
-
-/// Sizes and elements: Eigen compares no sizes.
-std::vector<std::vector<double>> numbers_of(const std::vector<Eigen::VectorXd>& vectors) {
-  std::vector<std::vector<double>> out;
-  for (const Eigen::VectorXd& x : vectors) out.emplace_back(x.begin(), x.end());
-  return out;
-}
-
-/// Memory of a whitening before changes nothing, even where fewer slips are whitened than it had, or none can be.
-TEST(Whitening, IsTheSameInMemoryOfAnother) {
-  const LagOffItsTruth lag;
-  const auto& [model, record, observations, p] = lag;
-  std::vector<double> elsewhere = p;
-  elsewhere[1] *= 1.1;
-  std::vector<std::size_t> few = all_slips(observations);
-  few.resize(few.size() / 2);
-  for (const auto& slips : {all_slips(observations), few}) {
-    const ModelResiduals all(model, observations, all_slips(observations)), residuals(model, observations, slips);
-    for (const bool keep_residuals : {true, false}) {
-      const ModelResiduals::Whitening truth = residuals.whitening_at(p.data(), keep_residuals);
-      const ModelResiduals::Whitening found =
-          residuals.whitening_at(p.data(), keep_residuals, all.whitening_at(elsewhere.data(), true));
-      ASSERT_GT(truth.part, 0);
-      EXPECT_EQ(numbers_of(found.g), numbers_of(truth.g));
-      EXPECT_EQ(numbers_of(found.residuals), numbers_of(truth.residuals));
-      EXPECT_EQ(found.p, truth.p);
-      EXPECT_EQ(found.part, truth.part);
-      EXPECT_EQ(found.level, truth.level);
-      EXPECT_EQ(found.weight, truth.weight);
-      EXPECT_EQ(found.log_spread, truth.log_spread);
-    }
-    elsewhere[1] = std::numeric_limits<double>::quiet_NaN();
-    const ModelResiduals::Whitening none =
-        residuals.whitening_at(elsewhere.data(), true, all.whitening_at(p.data(), true));
-    EXPECT_FALSE(none.any());
-    EXPECT_TRUE(none.p.empty() && none.residuals.empty());
-    for (const Eigen::VectorXd& g : none.g) EXPECT_EQ(g.size(), 0);
-    elsewhere[1] = 1.1 * p[1];
-  }
-}
-
 /// Wherever it begins, the search for a change ends where all slips, evaluated with the change in each gap between two,
 /// leave least.
 TEST(BestChange, IsWhereLeastIsLeftWhereverTheSearchBegins) {
@@ -183,24 +118,22 @@ TEST(BestChange, IsWhereLeastIsLeftWhereverTheSearchBegins) {
   const Bounds bounds = bounds_of(model, observations);
   std::vector<double> p = synthetic::table4_15mm(make_law("exponential"));
   p.insert(p.end(), {0.03, 0.0});
-  for (const bool keep_residuals : {false, true}) {
-    for (const double begin : {0.02, 0.2, 0.36, 0.37, 0.38, 0.6, 0.98}) {
-      p[change->time] = begin * end;
-      ModelResiduals residuals(model, observations, all_slips(observations));
-      const ModelResiduals::Whitening whitening = residuals.whitening_at(p.data(), keep_residuals);
-      residuals.whiten(whitening);
-      const double found = best_change(*change, residuals, observations, bounds, p, 1);
-      double least = std::numeric_limits<double>::infinity();
-      std::vector<double> at = p;
-      for (std::size_t k = 1; k < observations.slips.size(); ++k) {
-        at[change->time] = 0.5 * (observations.time[observations.slips[k - 1].end - 1] +
-                                  observations.time[observations.slips[k].begin]);
-        least = std::min(least, residuals.white_squares(at.data()));
-      }
-      at[change->time] = found;
-      EXPECT_LE(residuals.white_squares(at.data()), least * (1 + 1e-9)) << begin << keep_residuals;
-      EXPECT_NEAR(found, 0.37 * end, end / 30) << begin << keep_residuals;
+  for (const double begin : {0.02, 0.2, 0.36, 0.37, 0.38, 0.6, 0.98}) {
+    p[change->time] = begin * end;
+    ModelResiduals residuals(model, observations, all_slips(observations));
+    const ModelResiduals::Whitening whitening = residuals.whitening_at(p.data());
+    residuals.whiten(whitening);
+    const double found = best_change(*change, residuals, observations, bounds, p, 1);
+    double least = std::numeric_limits<double>::infinity();
+    std::vector<double> at = p;
+    for (std::size_t k = 1; k < observations.slips.size(); ++k) {
+      at[change->time] =
+          0.5 * (observations.time[observations.slips[k - 1].end - 1] + observations.time[observations.slips[k].begin]);
+      least = std::min(least, residuals.white_squares(at.data()));
     }
+    at[change->time] = found;
+    EXPECT_LE(residuals.white_squares(at.data()), least * (1 + 1e-9)) << begin;
+    EXPECT_NEAR(found, 0.37 * end, end / 30) << begin;
   }
 }
 

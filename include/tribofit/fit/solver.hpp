@@ -32,7 +32,8 @@ struct SolverOptions {
   bool hold_at_bounds = false;
 };
 
-struct SolverResult {
+/// Where a search ended.
+struct Minimum {
   std::vector<double> p;
   double cost = 0;  ///< half the sum of squares
   bool converged = false;
@@ -43,8 +44,8 @@ struct SolverResult {
 /// Least squares by Levenberg-Marquardt (Ceres, dense QR), within bounds where they are given.
 /// Parameters with lower == upper are held. A problem that cannot be solved is a result with converged == false.
 /// Throws Stopped within a StopScope that says so, and so does the other.
-SolverResult minimize(const Residuals& problem, std::span<const double> start, std::span<const double> lower = {},
-                      std::span<const double> upper = {}, const SolverOptions& options = {});
+Minimum minimize(const Residuals& problem, std::span<const double> start, std::span<const double> lower = {},
+                 std::span<const double> upper = {}, const SolverOptions& options = {});
 
 /// Residuals that know a part of all values only, as those of one record do of several that share parameters.
 struct ResidualPart {
@@ -56,13 +57,7 @@ struct ResidualPart {
 /// Least squares of all parts together, within bounds. Values that one part alone depends on are eliminated part by
 /// part (Schur complement), and of its residuals a part keeps as many rows as it has parameters, and one: cost and
 /// memory are linear in parts.
-SolverResult minimize(std::span<const ResidualPart> parts, std::span<const double> start, std::span<const double> lower,
-                      std::span<const double> upper, const SolverOptions& options = {});
-
-/// Covariance of the parameters if the residuals were independent with one variance: s^2 (J'J)^-1 at p, row by row,
-/// s^2 the residual sum of squares over the degrees of freedom. Samples of a trace are not independent: fits of traces
-/// take their errors from cycles instead (fit.hpp). Directions the data do not determine get what rounding leaves, not
-/// an error.
-std::vector<double> covariance_of_independent(const Residuals& problem, std::span<const double> p);
+Minimum minimize(std::span<const ResidualPart> parts, std::span<const double> start, std::span<const double> lower,
+                 std::span<const double> upper, const SolverOptions& options = {});
 
 }  // namespace tribofit

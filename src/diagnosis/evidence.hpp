@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <vector>
 
 #include "limits.hpp"
+#include "probes.hpp"
 #include "trial.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 
@@ -38,10 +40,31 @@ struct Choice {
   double least_by_size = 0;
 };
 
+/// How much larger the variance of a parameter is than independent residuals of one variance would make it.
+struct DesignEffect {
+  double of_cycles = 1;  ///< correlation within and between cycles, as the cycles themselves show it. At least 1
+  double of_slow = 1;    ///< the same where all correlation is that of slow noise. At least 1
+  double largest() const { return std::max(of_cycles, of_slow); }
+};
+/// The largest of `count` parameters from `first` on. noise: variance of a residual.
+DesignEffect design_effect(const CycleEvidence& evidence, const std::vector<bool>& free, std::size_t first,
+                           std::size_t count, double noise, const SlowNoise& slow);
+
+/// p-value of a fall of the squares by `fall` for `parameters` more parameters, when independent residuals of variance
+/// `noise` count for 1/design_effect each and the variance is known with `freedom` degrees of freedom (F test).
+double fall_p_value(double fall, std::size_t parameters, double noise, double design_effect, double freedom);
+
 /// How much better `richer` is than `poorer`, from which it differs by one effect. tests: the p-value is corrected for
 /// as many.
 CandidateResult compare(const DiagnosisContext& context, const Level& level, const Trial& poorer, Trial richer,
                         const Candidate& candidate, double tests, const Limits& least);
+
+/// Fits further columns beside a trial and writes what that takes off its squares into the probe: fall, size, p_value.
+/// columns: one row a value of each slip and one for its break-away; places: where else the same would have been looked
+/// for. Returns their coefficients, none where the model is not finite there. Cost: one pass over the values of the
+/// level.
+Eigen::VectorXd judge_probe(const DiagnosisContext& context, const Level& level, const Trial& trial,
+                            const ModelResiduals::FurtherColumns& columns, double places, Probe& probe);
 
 /// What an effect must promise to be worth a fit beside a model that leaves the squares of `coarse`, with scatter as
 /// `whitening` says.
