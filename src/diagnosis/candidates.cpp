@@ -12,6 +12,7 @@
 #include "fit/starts.hpp"
 #include "imitations.hpp"
 #include "limits.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/segmentation/strokes.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -122,17 +123,16 @@ std::string obstacle(const EffectInfo& info, std::span<const Record> records, co
   if (needs.force && !seen.force_known) return "the normal force is not known (give --load)";
   if (seen.revolutions < info.excitation.revolutions) return too_few_revolutions(seen.revolutions, info);
   if (needs.load && seen.load_spread < limits::kLeastLoadSpread) {
-    return fmt::format("the load varies by {:.1f} % only", 100 * seen.load_spread);
+    return fmt::format("the load varies by {} % only", fixed(100 * seen.load_spread, 1));
   }
   if (needs.temperature && seen.temperature_spread < limits::kLeastTemperatureSpread) {
-    return fmt::format("the temperature varies by {:.1f} K only", seen.temperature_spread);
+    return fmt::format("the temperature varies by {} K only", fixed(seen.temperature_spread, 1));
   }
   if (needs.stick_time && seen.stick_time_ratio < limits::kLeastStickRatio &&
       seen.longest_stick_ratio < limits::kLeastStickRatio) {
     return seen.median_stick_time > 0
-               ? fmt::format(
-                     "the stick times are all about {:.2g} s: longer and shorter sticks are not distinguishable",
-                     seen.median_stick_time)
+               ? fmt::format("the stick times are all about {} s: longer and shorter sticks are not distinguishable",
+                             general(seen.median_stick_time, 2))
                : std::string("too few stick times were recorded");
   }
   if (info.excitation.both_directions && !seen.both_directions) return "the block slides in one direction only";
@@ -266,8 +266,8 @@ ParameterStarts starts_of_parameter(const Parameter& parameter, AllowedRange bou
 
 std::string too_few_revolutions(double recorded, const EffectInfo& info) {
   const std::string needed =
-      info.excitation.revolutions == 2 ? "two" : fmt::format("{:g}", info.excitation.revolutions);
-  return fmt::format("the record holds {:.1f} revolutions of the disc; {} are needed", recorded, needed);
+      info.excitation.revolutions == 2 ? "two" : general(info.excitation.revolutions);
+  return fmt::format("the record holds {} revolutions of the disc; {} are needed", fixed(recorded, 1), needed);
 }
 
 std::vector<Candidate> candidates(std::span<const Record> records, const Observations& observations,

@@ -7,6 +7,7 @@
 
 #include "findings.hpp"
 #include "limits.hpp"
+#include "tribofit/output/digits.hpp"
 
 namespace tribofit::diagnosis {
 
@@ -36,9 +37,10 @@ std::vector<std::string> humps(const Probe& probe, double largest) {
   for (std::size_t k = peak > 1 ? peak - 1 : 1; k <= std::min(peak + 1, probe.at.size() - 2); ++k) {
     for (const double w : {width, 2 * width}) {
       forms.push_back(
-          fmt::format("hump = a*exp(-((v-v0)/w)^2); a={:.4g}[{:.4g},{:.4g}], v0={:.4g}mm/s[0,{:.4g}], "
-                      "w={:.4g}mm/s[{:.4g},{:.4g}]",
-                      bulge(peak), -largest, largest, probe.at[k] * 1e3, last, w, 0.3 * width, last));
+          fmt::format("hump = a*exp(-((v-v0)/w)^2); a={}[{},{}], v0={}mm/s[0,{}], "
+                      "w={}mm/s[{},{}]",
+                      general(bulge(peak), 4), general(-largest, 4), general(largest, 4), general(probe.at[k] * 1e3, 4),
+                      general(last, 4), general(w, 4), general(0.3 * width, 4), general(last, 4)));
     }
   }
   return forms;
@@ -47,9 +49,10 @@ std::vector<std::string> humps(const Probe& probe, double largest) {
 /// The swing over time that a probe found. level: friction that it scales [1 or N].
 std::string swing(const Probe& probe, double level, double largest) {
   return fmt::format(
-      "swing = a*cos(6.283185307*t/T-phi); a={:.4g}[0,{:.4g}], T={:.6g}s[{:.6g},{:.6g}], "
-      "phi={:.4g}[-6.3,6.3]",
-      probe.value[0] * level, largest, probe.period, 0.8 * probe.period, 1.25 * probe.period, probe.value[1]);
+      "swing = a*cos(6.283185307*t/T-phi); a={}[0,{}], T={}s[{},{}], "
+      "phi={}[-6.3,6.3]",
+      general(probe.value[0] * level, 4), general(largest, 4), general(probe.period, 6), general(0.8 * probe.period, 6),
+      general(1.25 * probe.period, 6), general(probe.value[1], 4));
 }
 
 /// What dies away with the distance since a reversal, as a probe found it.
@@ -57,9 +60,10 @@ std::vector<std::string> decays(const Probe& probe, double largest) {
   std::vector<std::string> forms;
   const double span = 1e3 * (probe.at.back() - probe.at.front());
   for (const double part : {0.03, 0.1, 0.3}) {
-    forms.push_back(
-        fmt::format("reversal = a*exp(-reversal_distance/L); a={:.4g}[{:.4g},{:.4g}], L={:.4g}mm[{:.4g},{:.4g}]",
-                    probe.value.front() - probe.value.back(), -largest, largest, part * span, 1e-3 * span, 3 * span));
+    forms.push_back(fmt::format("reversal = a*exp(-reversal_distance/L); a={}[{},{}], L={}mm[{},{}]",
+                                general(probe.value.front() - probe.value.back(), 4), general(-largest, 4),
+                                general(largest, 4), general(part * span, 4), general(1e-3 * span, 4),
+                                general(3 * span, 4)));
   }
   return forms;
 }
@@ -97,7 +101,7 @@ std::optional<FittedForm> fit_form(const DiagnosisContext& context, const Trial&
   std::string text = form.substr(0, form.find(';')) + "; ";
   for (std::size_t k = 0; k < info.parameters.size(); ++k) {
     const Parameter& q = info.parameters[k];
-    text += fmt::format("{}{}={:.4g}", k == 0 ? "" : ", ", q.name, trial.p[offset + k] / q.si);
+    text += fmt::format("{}{}={}", k == 0 ? "" : ", ", q.name, general(trial.p[offset + k] / q.si, 4));
   }
   return FittedForm{std::move(text), trial.held_out_squares};
 }

@@ -15,6 +15,7 @@
 #include "limits.hpp"
 #include "record_evidence.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
@@ -51,9 +52,10 @@ Diagnosis too_few_cycles(std::span<const Record> records, std::size_t cycles) {
   double duration = 0;
   for (const Record& record : records) duration += record.motion->duration();
   out.next_experiment =
-      cycles > 0 ? fmt::format("Record for at least {:.0f} s under the same conditions.",
-                               std::ceil(1.2 * duration * limits::kFewestCycles / static_cast<double>(cycles)))
-                 : "Record until the block has broken away a dozen times.";
+      cycles > 0
+          ? fmt::format("Record for at least {} s under the same conditions.",
+                        fixed(std::ceil(1.2 * duration * limits::kFewestCycles / static_cast<double>(cycles)), 0))
+          : "Record until the block has broken away a dozen times.";
   out.next_experiment += " If the block never stuck, say so: --never-sticks.";
   return out;
 }
@@ -216,10 +218,11 @@ void decide(const std::vector<Fit>& fits, bool structured, const Trial& top, Dia
       error - limits::kClearOfFloor * held_out_std_error(fits.back()) > far * diagnosis.floor_rmse;
   if (!beyond_chance && !is_clearly_above_floor(fits.back())) return;
   diagnosis.verdict = Verdict::unexplained;
-  diagnosis.messages.push_back(fmt::format(
-      "what remains is {:.1f} times the noise floor and no recorded variable explains it beyond chance: {}", left_over,
-      slow ? "most of it wanders slowly over time, as slow noise does"
-           : "it changes from cycle to cycle, or with something that was not recorded"));
+  diagnosis.messages.push_back(
+      fmt::format("what remains is {} times the noise floor and no recorded variable explains it beyond chance: {}",
+                  fixed(left_over, 1),
+                  slow ? "most of it wanders slowly over time, as slow noise does"
+                       : "it changes from cycle to cycle, or with something that was not recorded"));
 }
 
 }  // namespace

@@ -21,6 +21,7 @@
 #include "kinematic_effects.hpp"
 #include "limits.hpp"
 #include "tribofit/ingest/units.hpp"
+#include "tribofit/output/digits.hpp"
 
 namespace tribofit::diagnosis {
 
@@ -327,9 +328,9 @@ void veto_law(const Confirmation& run, Diagnosis& diagnosis) {
   if (!contradicts_law(run)) return;
   diagnosis.verdict = Verdict::unconfirmed;
   diagnosis.messages.push_back(fmt::format(
-      "{} contradicts the law: with every parameter frozen the error there is {:.3g}, {:.2g} times the noise "
-      "floor of {:.3g} of that run",
-      run.path, run.final_rmse, run.final_rmse / run.floor_rmse, run.floor_rmse));
+      "{} contradicts the law: with every parameter frozen the error there is {}, {} times the noise "
+      "floor of {} of that run",
+      run.path, general(run.final_rmse, 3), general(run.final_rmse / run.floor_rmse, 2), general(run.floor_rmse, 3)));
 }
 
 }  // namespace
@@ -341,9 +342,9 @@ void veto(const std::vector<Confirmation>& confirmations, Diagnosis& diagnosis) 
     if (found != Verdict::effect_found || !std::isfinite(run.final_rmse) || is_confirmed(run)) continue;
     diagnosis.verdict = Verdict::unconfirmed;
     diagnosis.messages.push_back(
-        fmt::format("{} does not bear out what was found: there the error goes from {:.4g} to "
-                    "{:.4g} (p = {:.2g})",
-                    run.path, run.base_rmse, run.final_rmse, run.p_value));
+        fmt::format("{} does not bear out what was found: there the error goes from {} to "
+                    "{} (p = {})",
+                    run.path, general(run.base_rmse, 4), general(run.final_rmse, 4), general(run.p_value, 2)));
   }
 }
 

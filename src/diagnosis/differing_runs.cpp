@@ -11,6 +11,7 @@
 #include "fit/assessment.hpp"
 #include "limits.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit::diagnosis {
@@ -114,9 +115,9 @@ void withhold_of_differing_runs(const std::vector<PreparedTrace>& traces, const 
   const std::vector<std::string> shown = shown_by_all(single);
   std::string differs = fmt::format(
       "the law differs from run to run: each {}by itself is described down to its noise floor{}, all together leave "
-      "{:.1f} times theirs; no effect is named from differences between runs that no run shows",
+      "{} times theirs; no effect is named from differences between runs that no run shows",
       single.size() < traces.size() ? fmt::format("of the {} longest runs ", single.size()) : "run ",
-      shown.empty() ? "" : " with " + listed(shown) + " in every one", left / diagnosis.floor_rmse);
+      shown.empty() ? "" : " with " + listed(shown) + " in every one", fixed(left / diagnosis.floor_rmse, 1));
   if (diagnosis.verdict == Verdict::effect_found && diagnosis.ladder.size() > 1) {  // what was found stays found
     diagnosis.messages.push_back(std::move(differs));
     return;

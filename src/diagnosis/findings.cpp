@@ -12,6 +12,7 @@
 #include "fit/starts.hpp"
 #include "limits.hpp"
 #include "tribofit/friction/effect_pairs.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit::diagnosis {
@@ -53,7 +54,7 @@ std::string bound_reached(const CandidateResult& judged, const Candidate& candid
   for (std::size_t k = 0; k < candidate.info.parameters.size(); ++k) {
     if (!trial.at_bound[offset + k]) continue;
     const Parameter q = on_scale_of(candidate.info.parameters[k], observations);
-    return fmt::format("{} beyond {:.3g}{}{}", q.name, trial.p[offset + k] / q.si, q.unit == "1" ? "" : " ",
+    return fmt::format("{} beyond {}{}{}", q.name, general(trial.p[offset + k] / q.si, 3), q.unit == "1" ? "" : " ",
                        q.unit == "1" ? "" : q.unit);
   }
   return "";
@@ -72,8 +73,9 @@ std::string why_not(const CandidateResult& judged, const Candidate& candidate, c
   }
   if (judged.fall <= 0) return "it does not lower the error on held-out cycles";
   if (judged.p_value >= limits::kChance)
-    return fmt::format("what it explains may be chance (p = {:.2g})", judged.p_value);
-  return fmt::format("what it explains is {:.1f} % of what noise leaves, too little to be named", 100 * judged.size);
+    return fmt::format("what it explains may be chance (p = {})", general(judged.p_value, 2));
+  return fmt::format("what it explains is {} % of what noise leaves, too little to be named",
+                     fixed(100 * judged.size, 1));
 }
 
 /// Parameters of a trial as the report shows them, without intervals.
@@ -197,10 +199,10 @@ void say_why_not(const FindingInputs& in, std::size_t k, const LastResult& last,
     finding.status = EffectStatus::possible;
     finding.reason =
         last.judged->plausible
-            ? fmt::format("it would take away much of what remains, but that may be chance (p = {:.2g}); to decide: {}",
-                          last.judged->p_value, in.all[k].info.experiment)
+            ? fmt::format("it would take away much of what remains, but that may be chance (p = {}); to decide: {}",
+                          general(last.judged->p_value, 2), in.all[k].info.experiment)
             : finding.reason + ": something that acts like it remains (p = " +
-                  fmt::format("{:.2g}); to decide: {}", last.judged->p_value, in.all[k].info.experiment);
+                  fmt::format("{}); to decide: {}", general(last.judged->p_value, 2), in.all[k].info.experiment);
   }
   if (in.ladder.out_of_time && (last.judged == nullptr || last.step + 1 != in.ladder.steps.size())) {
     finding.status = EffectStatus::untried;

@@ -9,6 +9,7 @@
 
 #include "limits.hpp"
 #include "tribofit/kinematics/health.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::diagnosis {
@@ -202,9 +203,9 @@ void offer_load_variation(std::span<const Record> records, Diagnosis& diagnosis)
     if (info.sketch.view != SketchView::load || at == diagnosis.effects.end()) continue;
     at->status = EffectStatus::possible;
     at->reason = fmt::format(
-        "friction at break-away and in fast slip rises and falls together, by {:.1f} % from cycle to cycle: the load "
+        "friction at break-away and in fast slip rises and falls together, by {} % from cycle to cycle: the load "
         "may vary; record the load",
-        100 * swing);
+        fixed(100 * swing, 1));
     break;
   }
   diagnosis.next_experiment =

@@ -6,6 +6,7 @@
 #include "assessment.hpp"
 #include "fit_steps.hpp"
 #include "limits.hpp"
+#include "tribofit/output/digits.hpp"
 
 namespace tribofit {
 
@@ -33,7 +34,7 @@ void add_condition(Fit& fit) {
   fit.messages.push_back(
       fmt::format("errors and intervals assume that the law is right, {}: the held-out error is {} the noise floor",
                   is_clearly_above_floor(fit) ? "but it is not" : "and it may not be",
-                  is_far_above_floor(fit) ? "far above" : fmt::format("{:.1f} times", over_floor(fit))));
+                  is_far_above_floor(fit) ? "far above" : fmt::format("{} times", fixed(over_floor(fit), 1))));
 }
 
 void add_undetermined(const std::vector<std::vector<std::size_t>>& groups, Fit& fit) {
@@ -65,8 +66,8 @@ void add_bounded(const std::vector<bool>& unconstrained, Fit& fit) {
     } else if (p.at_bound) {
       const bool low = std::abs(p.value / p.parameter.si - p.parameter.lower) <
                        std::abs(p.value / p.parameter.si - p.parameter.upper);
-      fit.messages.push_back(fmt::format("{} is at its {} bound of {:g}{}", shown_name(p), low ? "lower" : "upper",
-                                         low ? p.parameter.lower : p.parameter.upper,
+      fit.messages.push_back(fmt::format("{} is at its {} bound of {}{}", shown_name(p), low ? "lower" : "upper",
+                                         general(low ? p.parameter.lower : p.parameter.upper),
                                          p.parameter.unit == "1" ? "" : " " + p.parameter.unit));
     }
   }
@@ -74,9 +75,9 @@ void add_bounded(const std::vector<bool>& unconstrained, Fit& fit) {
 
 void add_correlated(Fit& fit) {
   for (const Correlation& c : fit.correlations) {
-    fit.messages.push_back(
-        fmt::format("{} and {} are strongly correlated ({:+.2f}): the data fix a combination of them",
-                    shown_name(fit.parameters[c.first]), shown_name(fit.parameters[c.second]), c.value));
+    fit.messages.push_back(fmt::format("{} and {} are strongly correlated ({}): the data fix a combination of them",
+                                       shown_name(fit.parameters[c.first]), shown_name(fit.parameters[c.second]),
+                                       with_sign(c.value, 2)));
   }
 }
 
@@ -89,16 +90,16 @@ void add_extrapolated(Fit& fit) {
   const double missing = 1 - *at_slowest;
   if (missing > kExtrapolated) {
     fit.messages.push_back(
-        fmt::format("mu_s is extrapolated: nothing was recorded below {:.1f} mm/s, where {:.0f} % of the drop to mu_k "
+        fmt::format("mu_s is extrapolated: nothing was recorded below {} mm/s, where {} % of the drop to mu_k "
                     "has already happened",
-                    fit.slowest * 1e3, 100 * missing));
+                    fixed(fit.slowest * 1e3, 1), fixed(100 * missing, 0)));
   }
   const double reached = remaining_fall(model.law(), p, fit.fastest).value_or(0);
   const double drop = std::abs(fit.parameters[0].value - fit.parameters[1].value);
   if (reached > kExtrapolated && drop > 0) {
-    fit.messages.push_back(fmt::format(
-        "mu_k is extrapolated: at the fastest slip ({:.1f} mm/s) {:.0f} % of the drop from mu_s is still to come",
-        fit.fastest * 1e3, 100 * reached));
+    fit.messages.push_back(
+        fmt::format("mu_k is extrapolated: at the fastest slip ({} mm/s) {} % of the drop from mu_s is still to come",
+                    fixed(fit.fastest * 1e3, 1), fixed(100 * reached, 0)));
   }
 }
 

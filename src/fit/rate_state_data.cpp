@@ -10,6 +10,7 @@
 
 #include "kinematics/limits.hpp"
 #include "limits.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::fit {
@@ -240,8 +241,8 @@ RateStateData rate_state_data(const Motion& motion, const RateStateOptions& opti
     }
     step.samples = samples.time.size();
     if (earlier < kFewestBeforeStep || step.samples - earlier < kFewestBehindStep) {
-      messages.push_back(fmt::format("the step at {:.6g} s was not used: {} samples before and {} behind it", step.time,
-                                     earlier, step.samples - earlier));
+      messages.push_back(fmt::format("the step at {} s was not used: {} samples before and {} behind it",
+                                     general(step.time, 6), earlier, step.samples - earlier));
       continue;
     }
     step.interval = quantile(std::move(intervals), 0.1);

@@ -8,6 +8,7 @@
 #include "fit_steps.hpp"
 #include "limits.hpp"
 #include "rate_state_noise.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit::fit {
@@ -112,14 +113,14 @@ void say_excess(const FitErrors& found, double distance, const std::vector<Eigen
     fit.lacks = excess->p_value < kChanceOfExcess && excess->factor > kMuchLeft;
     if (*fit.lacks)
       fit.messages.push_back(fmt::format(
-          "what is left is {:.2g} times as large over the first {:.3g} um behind the steps as elsewhere: this law does "
+          "what is left is {} times as large over the first {} um behind the steps as elsewhere: this law does "
           "not describe the response",
-          excess->factor, 1e6 * distance));
+          general(excess->factor, 2), general(1e6 * distance, 3)));
   } else if (fit.noise_time > 0 && fit.noise_slow > kMuchWander * fit.noise_white) {
     fit.messages.push_back(
-        fmt::format("what is left wanders by {:.2g} over {:.2g} s, far above the noise of a sample: the measurement "
+        fmt::format("what is left wanders by {} over {} s, far above the noise of a sample: the measurement "
                     "drifts, or this law does not describe the response",
-                    fit.noise_slow, fit.noise_time));
+                    general(fit.noise_slow, 2), general(fit.noise_time, 2)));
   }
 }
 
@@ -264,20 +265,20 @@ void add_messages(RateStateFit& fit) {
           name == "k" && upper
               ? fmt::format("k is not resolved: the machine is stiffer than the samples behind the steps can show; "
                             "sample faster there, or hold k by --bounds")
-              : fmt::format("{} ended at its {} bound, {:.4g} {}", name, upper ? "upper" : "lower", p.value / si,
-                            p.parameter.unit));
+              : fmt::format("{} ended at its {} bound, {} {}", name, upper ? "upper" : "lower",
+                            general(p.value / si, 4), p.parameter.unit));
     } else if (!p.determined) {
       fit.messages.push_back(
-          fmt::format("{} is not known from these data: its 95 % interval reaches from {:.3g} to "
-                      "{:.3g} {}",
-                      name, p.lower95 / si, p.upper95 / si, p.parameter.unit));
+          fmt::format("{} is not known from these data: its 95 % interval reaches from {} to "
+                      "{} {}",
+                      name, general(p.lower95 / si, 3), general(p.upper95 / si, 3), p.parameter.unit));
     }
   }
   for (const Correlation& c : fit.correlations) {
-    fit.messages.push_back(
-        fmt::format("{} and {} are correlated by {:.3f}: the data fix a combination of them better "
-                    "than either",
-                    fit.parameters[c.first].parameter.name, fit.parameters[c.second].parameter.name, c.value));
+    fit.messages.push_back(fmt::format(
+        "{} and {} are correlated by {}: the data fix a combination of them better "
+        "than either",
+        fit.parameters[c.first].parameter.name, fit.parameters[c.second].parameter.name, fixed(c.value, 3)));
   }
 }
 

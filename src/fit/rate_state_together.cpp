@@ -9,6 +9,7 @@
 
 #include "limits.hpp"
 #include "rate_state_steps.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/distributions.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
@@ -96,14 +97,14 @@ class Together {
                                                    "those at which the recorded displacement turns"};
     if (measured || moves.largest > out_.data.steps.front().interval)
       out_.messages.push_back(
-          fmt::format("friction answers the steps at other times than {}: they were moved by up to {:.3g} s",
-                      kKnown.at(static_cast<std::size_t>(source_)), moves.largest));
+          fmt::format("friction answers the steps at other times than {}: they were moved by up to {} s",
+                      kKnown.at(static_cast<std::size_t>(source_)), general(moves.largest, 3)));
     out_.at_limit = moves.at_limit;
     if (moves.at_limit.empty()) return;
-    out_.messages.push_back(fmt::format(
-        "the step at {:.6g} s was moved as far as its time may be wrong, and friction may answer it later or "
-        "earlier still: the values are not to be trusted; check the column or the times of the load point",
-        out_.data.steps[moves.at_limit.front()].time));
+    out_.messages.push_back(
+        fmt::format("the step at {} s was moved as far as its time may be wrong, and friction may answer it later or "
+                    "earlier still: the values are not to be trusted; check the column or the times of the load point",
+                    general(out_.data.steps[moves.at_limit.front()].time, 6)));
   }
 
   RateStateModel model_of(std::size_t law) const {

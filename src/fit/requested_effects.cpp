@@ -10,6 +10,7 @@
 #include "errors.hpp"
 #include "tribofit/fit/observations.hpp"
 #include "tribofit/friction/evaluate.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/segmentation/strokes.hpp"
 
 namespace tribofit {
@@ -52,9 +53,9 @@ std::string trouble_with(const Formula& formula, const Motion& motion, const Tra
         acts |= term[i] != 0;
         if (!at_starts || std::isfinite(term[i])) continue;
         return fmt::format(
-            "'{}' is not finite on these data at its starting values, first at t = {:.4g} s, v_r = {:.4g} mm/s: it "
+            "'{}' is not finite on these data at its starting values, first at t = {} s, v_r = {} mm/s: it "
             "divides by zero, overflows or leaves its domain",
-            key, slip.time[i], 1e3 * slip.velocity[i]);
+            key, general(slip.time[i], 4), general(1e3 * slip.velocity[i], 4));
       }
     }
   }

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "limits.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit::rig {
@@ -35,21 +36,23 @@ const char* damping_unit(const RigFit& fit) {
 }
 
 std::string delay_text(const RigFit& fit) {
-  return fmt::format("friction is recorded {:.3g} +/- {:.1g} ms {} v_b; without that the damping would be {:.3g} {}",
-                     1e3 * std::abs(fit.delay.value), 1e3 * fit.delay.std_error,
-                     fit.delay.value > 0 ? "later than" : "before", 1e-3 * fit.without_both.damping, damping_unit(fit));
+  return fmt::format("friction is recorded {} +/- {} ms {} v_b; without that the damping would be {} {}",
+                     general(1e3 * std::abs(fit.delay.value), 3), general(1e3 * fit.delay.std_error, 1),
+                     fit.delay.value > 0 ? "later than" : "before", general(1e-3 * fit.without_both.damping, 3),
+                     damping_unit(fit));
 }
 
 /// The damping in N s/mm, as tables show it.
 std::string damping_text(const RigFit& fit) {
-  return fmt::format("{:.3g} +/- {:.2g} {}", 1e-3 * fit.damping.value, 1e-3 * fit.damping.std_error, damping_unit(fit));
+  return fmt::format("{} +/- {} {}", general(1e-3 * fit.damping.value, 3), general(1e-3 * fit.damping.std_error, 2),
+                     damping_unit(fit));
 }
 
 std::string why_negative_damping(const RigFit& fit) {
   const bool sags = high_pass_counts(fit), late = delay_counts(fit);
   if (sags && fit.high_pass.value > 0 && (!late || t_of(fit.high_pass) > t_of(fit.delay))) {
-    return fmt::format("v_b went through a high-pass that was not undone (the balance sees {:.3g} Hz)",
-                       fit.high_pass.value);
+    return fmt::format("v_b went through a high-pass that was not undone (the balance sees {} Hz)",
+                       general(fit.high_pass.value, 3));
   }
   if (late) return delay_text(fit);
   return "a high-pass of the vibrometer or a friction channel that is late does this, but neither shows clearly";
@@ -82,39 +85,40 @@ void add_about_channels(const Motion& motion, RigFit& fit) {
   fit.damping_doubtful = sags || late;
   if (sag_first && fit.high_pass.value > 0) {
     out.push_back(fmt::format(
-        "the damping is wrong: the balance shows a high-pass of {:.3g} +/- {:.2g} Hz on v_b that is not undone (a "
+        "the damping is wrong: the balance shows a high-pass of {} +/- {} Hz on v_b that is not undone (a "
         "force "
-        "follows the integral of the displacement, as in no rig); without it the damping would be {:.3g} {}: undo it, "
+        "follows the integral of the displacement, as in no rig); without it the damping would be {} {}: undo it, "
         "or "
         "declare it as vibrometer.high_pass",
-        fit.high_pass.value, fit.high_pass.std_error, 1e-3 * fit.without_both.damping, damping_unit(fit)));
+        general(fit.high_pass.value, 3), general(fit.high_pass.std_error, 2),
+        general(1e-3 * fit.without_both.damping, 3), damping_unit(fit)));
   } else if (sag_first) {
     out.push_back(fmt::format(
-        "the damping is wrong: the balance shows a high-pass of {:.3g} +/- {:.2g} Hz on the force (a charge amplifier "
+        "the damping is wrong: the balance shows a high-pass of {} +/- {} Hz on the force (a charge amplifier "
         "drifts back so), or one on v_b undone too far",
-        -fit.high_pass.value, fit.high_pass.std_error));
+        general(-fit.high_pass.value, 3), general(fit.high_pass.std_error, 2)));
   } else if (late) {
     out.push_back("the damping is wrong: " + delay_text(fit) +
                   "; a delay or a slower force sensor does this: declare it with --instruments");
   }
   if (motion.high_pass > 0) {
-    out.push_back(fmt::format("a high-pass of {:.3g} Hz on v_b was undone; the error of its corner is fitted too",
-                              motion.high_pass));
+    out.push_back(fmt::format("a high-pass of {} Hz on v_b was undone; the error of its corner is fitted too",
+                              general(motion.high_pass, 3)));
   }
 }
 
 void add_about_mass(const Instruments& instruments, RigFit& fit) {
   auto& out = fit.messages;
   if (fit.mass_below_declared) {
-    out.push_back(fmt::format("the mass includes the declared {:.4g} kg below the force sensor",
-                              instruments.force_sensor.mass_below->value));
+    out.push_back(fmt::format("the mass includes the declared {} kg below the force sensor",
+                              general(instruments.force_sensor.mass_below->value, 4)));
     return;
   }
   if (fit.mass_below.determined) {
-    out.push_back(
-        fmt::format("the declared ping frequency belongs to the whole mass: {:.4g} +/- {:.2g} kg of it hang "
-                    "below the force sensor",
-                    fit.mass_below.value, std::hypot(fit.mass_below.std_error, fit.mass_below.systematic)));
+    out.push_back(fmt::format(
+        "the declared ping frequency belongs to the whole mass: {} +/- {} kg of it hang "
+        "below the force sensor",
+        general(fit.mass_below.value, 4), general(std::hypot(fit.mass_below.std_error, fit.mass_below.systematic), 2)));
     return;
   }
   out.push_back(
@@ -128,15 +132,16 @@ void add_about_stiffness(const Motion& motion, const Instruments& instruments, R
   if (fit.determined && fit.stick_slope_stiffness.determined && std::abs(off) > kPartOfStiffness &&
       t_p_value(fit.stick_slope_difference, fit.degrees_of_freedom) < kChanceOfRemark) {
     out.push_back(
-        fmt::format("the slope of friction in stick gives another stiffness ({:+.2g} %): the gain of the vibrometer or "
+        fmt::format("the slope of friction in stick gives another stiffness ({} %): the gain of the vibrometer or "
                     "omega r is off, or the "
                     "contact creeps in stick",
-                    100 * off));
+                    general_with_sign(100 * off, 2)));
   }
   if (const auto& pull = instruments.rig.stiffness; pull && fit.stiffness.determined && !fit.per_unit_load) {
     const double error = std::hypot(fit.stiffness.std_error, fit.stiffness.systematic, pull->uncertainty);
-    out.push_back(fmt::format("the declared pull test gives {:.4g} N/mm, {:+.1f} standard errors from the balance",
-                              1e-3 * pull->value, (pull->value - fit.stiffness.value) / error));
+    out.push_back(fmt::format("the declared pull test gives {} N/mm, {} standard errors from the balance",
+                              general(1e-3 * pull->value, 4),
+                              with_sign((pull->value - fit.stiffness.value) / error, 1)));
   }
   if (fit.per_unit_load) {
     out.push_back("no normal force is known: mass, damping and stiffness are per newton of it; give --load 50N");
