@@ -14,7 +14,6 @@
 #include "conclusions.hpp"
 #include "fit/fit_laws.hpp"
 #include "fit/requested_effects.hpp"
-#include "fit/stick.hpp"
 #include "fit/stick_evidence.hpp"
 #include "imitations.hpp"
 #include "instrument_limits.hpp"

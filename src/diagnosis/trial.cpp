@@ -165,7 +165,7 @@ Approach nearest(const Level& level, const FrictionModel& model, const ModelResi
   const ModelResiduals residuals = residuals_of(level.observations, model, whitening);
   Approach best;
   for (const auto& start : starts) {
-    Minimum next = minimize(residuals, start, bounds.lower, bounds.upper, search_of(8));
+    Solution next = minimize(residuals, start, bounds.lower, bounds.upper, search_of(8));
     if (best.p.empty() || 2 * next.cost < best.squares) best = {std::move(next.p), 2 * next.cost};
   }
   return best;

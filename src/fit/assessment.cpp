@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slip_ranges.hpp"
+#include "observing.hpp"
 #include "tribofit/fit/observations.hpp"
 
 namespace tribofit {

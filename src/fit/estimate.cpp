@@ -10,7 +10,7 @@
 
 #include "fit_steps.hpp"
 #include "limits.hpp"
-#include "reduced.hpp"
+#include "observing.hpp"
 #include "spectral_lines.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
@@ -96,13 +96,13 @@ std::vector<std::vector<double>> different_starts(const FitContext& context) {
 }
 
 /// Searches from each start. A look soon gives up all but the two that are ahead.
-std::vector<Minimum> searches_from(const FitContext& context, const std::vector<std::vector<double>>& starts,
-                                   const std::vector<std::size_t>& part) {
+std::vector<Solution> searches_from(const FitContext& context, const std::vector<std::vector<double>>& starts,
+                                    const std::vector<std::size_t>& part) {
   constexpr std::size_t kAhead = 2;
   const bool gives_up = context.is_look() && starts.size() > kAhead;
   SolverOptions first = search_of(context);
   if (gives_up) first.max_iterations = kIterationsToCompare;
-  std::vector<Minimum> tries(starts.size());
+  std::vector<Solution> tries(starts.size());
   run_tasks(starts.size(), context.evaluation.threads,
             [&](std::size_t k) { tries[k] = context.solve(part, starts[k], first); });
   if (!gives_up) return tries;
@@ -111,7 +111,7 @@ std::vector<Minimum> searches_from(const FitContext& context, const std::vector<
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return tries[a].cost < tries[b].cost; });
   run_tasks(kAhead, context.evaluation.threads, [&](std::size_t k) {
-    Minimum& own = tries[order[k]];
+    Solution& own = tries[order[k]];
     if (!own.converged) own = context.solve(part, own.p, search_of(context));
   });
   return tries;
@@ -120,7 +120,7 @@ std::vector<Minimum> searches_from(const FitContext& context, const std::vector<
 /// Where the best of several starts leads, compared on slips with about so many values.
 std::vector<double> best_of_starts(const FitContext& context, const std::vector<std::vector<double>>& starts,
                                    std::size_t values, Fit& fit) {
-  const std::vector<Minimum> tries = searches_from(context, starts, some_slips(context.observations, values));
+  const std::vector<Solution> tries = searches_from(context, starts, some_slips(context.observations, values));
   std::size_t best = 0;
   for (std::size_t k = 1; k < tries.size(); ++k) {
     if (tries[k].cost < tries[best].cost * (1 - std::max(1e-6, search_of(context).relative_cost))) best = k;

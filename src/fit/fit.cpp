@@ -11,7 +11,7 @@
 #include "fit_steps.hpp"
 #include "limits.hpp"
 #include "points.hpp"
-#include "stick.hpp"
+#include "stick_evidence.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "limits.hpp"
+#include "observing.hpp"
 #include "requested_effects.hpp"
-#include "slip_ranges.hpp"
 #include "tribofit/fit/observations.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/statistics/parallel.hpp"

@@ -47,7 +47,7 @@ struct FitContext {
   ModelResiduals::Whitening whitening{};  ///< of every slip; without any: plain least squares
 
   // Set by estimate().
-  Minimum minimum{};
+  Solution minimum{};
   std::vector<double> first_start{};           ///< of the search
   CycleExtremes extremes{};                    ///< by per-cycle extremes only
   std::optional<ModelResiduals> at_minimum{};  ///< of all slips, whitened there, where they are known
@@ -63,12 +63,12 @@ struct FitContext {
     if (whitening.any()) out.whiten(whitening, own_levels);
     return out;
   }
-  Minimum solve(const std::vector<std::size_t>& slips, const std::vector<double>& start, const SolverOptions& solver,
-                const Bounds& within) const {
+  Solution solve(const std::vector<std::size_t>& slips, const std::vector<double>& start, const SolverOptions& solver,
+                 const Bounds& within) const {
     return minimize(residuals(slips), start, within.lower, within.upper, solver);
   }
-  Minimum solve(const std::vector<std::size_t>& slips, const std::vector<double>& start,
-                const SolverOptions& solver) const {
+  Solution solve(const std::vector<std::size_t>& slips, const std::vector<double>& start,
+                 const SolverOptions& solver) const {
     return solve(slips, start, solver, bounds);
   }
 };

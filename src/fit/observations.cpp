@@ -7,9 +7,8 @@
 #include <utility>
 
 #include "errors.hpp"
+#include "observing.hpp"
 #include "points.hpp"
-#include "record_scales.hpp"
-#include "slip_ranges.hpp"
 #include "tribofit/segmentation/strokes.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/stop.hpp"

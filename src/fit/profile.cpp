@@ -16,7 +16,7 @@ double profiled_squares(const ModelResiduals& residuals, const Bounds& bounds, s
   Bounds held = bounds;
   p[k] = held.lower[k] = held.upper[k] = value;
   constexpr SolverOptions kSearch{.max_iterations = 50, .relative_step = 1e-9, .relative_cost = 1e-9, .careful = false};
-  const Minimum result = minimize(residuals, p, held.lower, held.upper, kSearch);
+  const Solution result = minimize(residuals, p, held.lower, held.upper, kSearch);
   p = result.p;
   return 2 * result.cost;
 }

@@ -198,7 +198,7 @@ void set_correlations(RateStateFit& fit) {
 
 }  // namespace
 
-RateStateFit fit_from(const RateStateProblem& problem, const RateStateUnknowns& unknowns, const Minimum& minimum) {
+RateStateFit fit_from(const RateStateProblem& problem, const RateStateUnknowns& unknowns, const Solution& minimum) {
   RateStateFit fit;
   fit.evolution = problem.model().evolution;
   fit.states = problem.model().states;
@@ -232,7 +232,7 @@ RateStateFit fit_from(const RateStateProblem& problem, const RateStateUnknowns& 
   return fit;
 }
 
-double p_value_of_no_answer(const RateStateProblem& problem, const Minimum& minimum, const RateStateFit& fit) {
+double p_value_of_no_answer(const RateStateProblem& problem, const Solution& minimum, const RateStateFit& fit) {
   const bool is_noise = fit.noise_white > 0 && !fit.lacks.value_or(false) &&
                         !(fit.noise_time > 0 && fit.noise_slow > kMuchWander * fit.noise_white);
   const auto free = std::count_if(fit.parameters.begin(), fit.parameters.end(),
@@ -246,8 +246,8 @@ double p_value_of_no_answer(const RateStateProblem& problem, const Minimum& mini
   return more > 0 ? f_p_value(more / values, values, kLargeFreedom) : kUnknown;
 }
 
-double log_likelihood_below(const RateStateProblem& best, const Minimum& best_minimum, const RateStateProblem& other,
-                            const Minimum& other_minimum, const RateStateFit& fit) {
+double log_likelihood_below(const RateStateProblem& best, const Solution& best_minimum, const RateStateProblem& other,
+                            const Solution& other_minimum, const RateStateFit& fit) {
   const FitErrors one(best, best_minimum.p), two(other, other_minimum.p);
   if (!one.valid() || !two.valid() || !(fit.noise_white > 0)) return kUnknown;
   const WanderingNoise noise = {fit.noise_white, fit.noise_slow, fit.noise_time};

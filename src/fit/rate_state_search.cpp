@@ -223,31 +223,31 @@ RateStateUnknowns unknowns_of(const RateStateData& data, std::size_t states, con
   return out;
 }
 
-Minimum refine(const RateStateProblem& problem, const std::vector<double>& start, const RateStateUnknowns& unknowns) {
+Solution refine(const RateStateProblem& problem, const std::vector<double>& start, const RateStateUnknowns& unknowns) {
   constexpr SolverOptions kSearch{
       .max_iterations = 100, .relative_step = 1e-9, .relative_cost = 1e-10, .careful = false};
-  Minimum found = minimize(problem, start, unknowns.lower, unknowns.upper, kSearch);
+  Solution found = minimize(problem, start, unknowns.lower, unknowns.upper, kSearch);
   found.converged = found.converged && std::isfinite(found.cost);
   return found;
 }
 
-Minimum search(const RateStateData& data, const RateStateModel& model, const std::vector<std::size_t>& steps,
-               const RateStateUnknowns& unknowns) {
+Solution search(const RateStateData& data, const RateStateModel& model, const std::vector<std::size_t>& steps,
+                const RateStateUnknowns& unknowns) {
   const RateStateData few = thinned(data, kValuesOfStepSearch);
   const RateStateProblem coarse(few, model, steps);
-  std::vector<Minimum> found;
+  std::vector<Solution> found;
   Eigen::VectorXd residual(static_cast<Eigen::Index>(coarse.count()));
   for (const std::vector<double>& start : unknowns.starts) {
     stop_point();
     if (!coarse.evaluate(start.data(), residual.data(), nullptr)) continue;  // it runs away from here
     found.push_back({.p = start, .cost = 0.5 * residual.squaredNorm(), .message = {}});
   }
-  const auto by_cost = [](const Minimum& x, const Minimum& y) { return x.cost < y.cost; };
+  const auto by_cost = [](const Solution& x, const Solution& y) { return x.cost < y.cost; };
   const auto keep_best = [&](std::size_t most, int iterations) {
     std::stable_sort(found.begin(), found.end(), by_cost);
     found.resize(std::min(most, found.size()));
-    for (Minimum& known : found) {
-      Minimum lower =
+    for (Solution& known : found) {
+      Solution lower =
           minimize(coarse, known.p, unknowns.lower, unknowns.upper,
                    {.max_iterations = iterations, .relative_step = 1e-5, .relative_cost = 1e-6, .careful = false});
       if (std::isfinite(lower.cost) && lower.cost <= known.cost) known = std::move(lower);
@@ -257,7 +257,7 @@ Minimum search(const RateStateData& data, const RateStateModel& model, const std
   keep_best(3, 60);
   if (found.empty()) return {.p = {}, .message = "from every start the simulated sliding ran away"};
   const auto best = std::min_element(found.begin(), found.end(), by_cost);
-  Minimum out = refine(RateStateProblem(data, model, steps), best->p, unknowns);
+  Solution out = refine(RateStateProblem(data, model, steps), best->p, unknowns);
   if (model.states == 2 && unknowns.states_alike && out.p.size() > 4 && out.p[2] > out.p[4]) {
     std::swap(out.p[1], out.p[3]);
     std::swap(out.p[2], out.p[4]);
@@ -265,12 +265,12 @@ Minimum search(const RateStateData& data, const RateStateModel& model, const std
   return out;
 }
 
-Minimum search_together(const RateStateData& data, const RateStateModel& model, const std::vector<std::size_t>& steps,
-                        const RateStateUnknowns& unknowns) {
-  Minimum together = search(data, model, steps, unknowns);
+Solution search_together(const RateStateData& data, const RateStateModel& model, const std::vector<std::size_t>& steps,
+                         const RateStateUnknowns& unknowns) {
+  Solution together = search(data, model, steps, unknowns);
   if (steps.size() < 2) return together;
   const std::vector<std::size_t> first = {steps.front()};
-  Minimum grown = search(data, model, first, unknowns);
+  Solution grown = search(data, model, first, unknowns);
   if (!grown.converged) return together;
   const auto values_of = [&](const std::vector<std::size_t>& some) {
     std::size_t values = 0;
@@ -281,7 +281,7 @@ Minimum search_together(const RateStateData& data, const RateStateModel& model, 
   if (together.converged && together.cost / values_of(steps) <= kFarFromMinimum * alone) return together;
   for (std::size_t count = 2; count <= steps.size(); ++count) {
     const std::vector<std::size_t> some(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(count));
-    Minimum next = refine(RateStateProblem(data, model, some), grown.p, unknowns);
+    Solution next = refine(RateStateProblem(data, model, some), grown.p, unknowns);
     if (next.converged || count == steps.size()) grown = std::move(next);
   }
   return grown.converged && (!together.converged || grown.cost < together.cost) ? grown : together;

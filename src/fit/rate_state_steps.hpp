@@ -121,16 +121,16 @@ RateStateUnknowns unknowns_of(const RateStateData& data, std::size_t states, con
 
 /// The best of several searches on few values, refined on all of them. Not converged where from every start sliding
 /// runs away.
-Minimum search(const RateStateData& data, const RateStateModel& model, const std::vector<std::size_t>& steps,
-               const RateStateUnknowns& unknowns);
+Solution search(const RateStateData& data, const RateStateModel& model, const std::vector<std::size_t>& steps,
+                const RateStateUnknowns& unknowns);
 
 /// The same of several steps; where what they leave is far above what the first of them leaves by itself, also from its
 /// values on, with one step more at a time.
-Minimum search_together(const RateStateData& data, const RateStateModel& model, const std::vector<std::size_t>& steps,
-                        const RateStateUnknowns& unknowns);
+Solution search_together(const RateStateData& data, const RateStateModel& model, const std::vector<std::size_t>& steps,
+                         const RateStateUnknowns& unknowns);
 
 /// A search from values that are nearly right.
-Minimum refine(const RateStateProblem& problem, const std::vector<double>& start, const RateStateUnknowns& unknowns);
+Solution refine(const RateStateProblem& problem, const std::vector<double>& start, const RateStateUnknowns& unknowns);
 
 /// A change of the load point's speed at a step: at its time or, of a hold, where it goes on. A drive that passes from
 /// one speed to the other passes as it does, whenever that is: its phases move together.
@@ -154,19 +154,19 @@ struct MovedSteps {
 /// Moves the steps to the times at which the response fits best, within what is known of them (VelocityStep::slack) and
 /// between their neighbours, and refines the minimum: Gauss-Newton steps in the parameters and the times together.
 MovedSteps refine_step_times(RateStateData& data, const RateStateModel& model, const RateStateUnknowns& unknowns,
-                             Minimum& minimum);
+                             Solution& minimum);
 
 /// Makes a fit of a minimum: errors, intervals, mu_0 and trend of each step, stability.
-RateStateFit fit_from(const RateStateProblem& problem, const RateStateUnknowns& unknowns, const Minimum& minimum);
+RateStateFit fit_from(const RateStateProblem& problem, const RateStateUnknowns& unknowns, const Solution& minimum);
 
 /// Nominal chance that noise alone, as the fit has it, does what the fitted answer to the steps does; NaN where it
 /// cannot be computed, or where what is left is no noise: a law that fails is no answer that is missing.
-double p_value_of_no_answer(const RateStateProblem& problem, const Minimum& minimum, const RateStateFit& fit);
+double p_value_of_no_answer(const RateStateProblem& problem, const Solution& minimum, const RateStateFit& fit);
 
 /// By how much the logarithm of the likelihood of what the other minimum leaves is below that of the best, with the
 /// noise of the fit made of the best; NaN where it cannot be computed.
-double log_likelihood_below(const RateStateProblem& best, const Minimum& best_minimum, const RateStateProblem& other,
-                            const Minimum& other_minimum, const RateStateFit& fit);
+double log_likelihood_below(const RateStateProblem& best, const Solution& best_minimum, const RateStateProblem& other,
+                            const Solution& other_minimum, const RateStateFit& fit);
 
 /// What a person should know of it.
 void add_messages(RateStateFit& fit);
@@ -176,7 +176,7 @@ struct StepsTogether {
   RateStateModel model;  ///< but for the law
   RateStateData data;    ///< with its steps where they were found to be
   RateStateUnknowns unknowns;
-  std::vector<Minimum> minima;        ///< of each law
+  std::vector<Solution> minima;       ///< of each law
   std::vector<RateStateFit> fits;     ///< and what it says
   std::size_t best = 0;               ///< of the laws
   std::vector<std::size_t> at_limit;  ///< steps whose times end at the limit of what is known of them
@@ -196,11 +196,7 @@ StepsTogether fit_together(const RateStateData& data, LoadPointSource source, co
 
 /// Nominal chance that what `fewer` leaves more than `more` is noise, by the likelihood with the noise of `more` and as
 /// many values as `more` has fitted beyond it; NaN where it cannot be computed.
-double p_value_of_more(const RateStateProblem& fewer, const Minimum& fewer_minimum, const RateStateProblem& more,
-                       const Minimum& more_minimum, const RateStateFit& fit, std::size_t values);
-
-/// Holds and how the peak behind them grows with the time at rest; nothing where there are none.
-std::optional<Healing> healing_of(const RateStateData& data, const RateStateProblem& problem,
-                                  const std::vector<double>& p, const RateStateFit& fit);
+double p_value_of_more(const RateStateProblem& fewer, const Solution& fewer_minimum, const RateStateProblem& more,
+                       const Solution& more_minimum, const RateStateFit& fit, std::size_t values);
 
 }  // namespace tribofit::fit

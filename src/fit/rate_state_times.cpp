@@ -79,7 +79,7 @@ Eigen::VectorXd response_by_time(const RateStateProblem& problem, const std::vec
 }
 
 MovedSteps refine_step_times(RateStateData& data, const RateStateModel& model, const RateStateUnknowns& unknowns,
-                             Minimum& minimum) {
+                             Solution& minimum) {
   std::vector<std::size_t> all(data.steps.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   const std::vector<Turn> free = free_turns(data);

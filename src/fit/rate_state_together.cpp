@@ -33,7 +33,7 @@ class Together {
   }
 
  private:
-  Minimum searched(StateEvolution evolution, Detrend detrend) const {
+  Solution searched(StateEvolution evolution, Detrend detrend) const {
     return search_together(out_.data, {evolution, out_.model.states, detrend}, out_.all(), out_.unknowns);
   }
 
@@ -44,7 +44,7 @@ class Together {
                                            ? std::vector{Detrend::displacement, Detrend::time}
                                            : std::vector{options_.detrend};
     const std::size_t laws = options_.evolutions.size();
-    std::vector<Minimum> found(lines.size() * laws);
+    std::vector<Solution> found(lines.size() * laws);
     run_tasks(found.size(), options_.threads,
               [&](std::size_t i) { found[i] = searched(options_.evolutions[i % laws], lines[i / laws]); });
     std::size_t chosen = 0;
@@ -69,13 +69,13 @@ class Together {
     const std::size_t turns = free_turns(free).size();
     if (turns == 0) return;
     std::vector<RateStateData> moved(searched_.size(), free);
-    std::vector<Minimum> behind = searched_;
+    std::vector<Solution> behind = searched_;
     std::vector<MovedSteps> moves(searched_.size());
     run_tasks(searched_.size(), options_.threads, [&](std::size_t i) {
       if (behind[i].converged) moves[i] = refine_step_times(moved[i], model_of(i), out_.unknowns, behind[i]);
     });
     double least = std::numeric_limits<double>::infinity();  // of any law, its steps where they are said to be
-    for (const Minimum& one : searched_) {
+    for (const Solution& one : searched_) {
       if (one.converged) least = std::min(least, one.cost);
     }
     std::size_t best = searched_.size();
@@ -111,8 +111,8 @@ class Together {
     return {options_.evolutions[law], out_.model.states, out_.model.detrend};
   }
 
-  bool is_beyond_chance(const RateStateData& moved, const RateStateModel& model, const Minimum& before,
-                        const Minimum& behind, std::size_t free) const {
+  bool is_beyond_chance(const RateStateData& moved, const RateStateModel& model, const Solution& before,
+                        const Solution& behind, std::size_t free) const {
     if (!behind.converged) return false;
     const RateStateProblem fewer(out_.data, model, out_.all());
     const RateStateProblem more = fewer.with_data(moved);
@@ -139,7 +139,7 @@ class Together {
   LoadPointSource source_;
   const RateStateOptions& options_;
   StepsTogether out_;
-  std::vector<Minimum> searched_;  ///< of the laws; empty: the steps were moved since
+  std::vector<Solution> searched_;  ///< of the laws; empty: the steps were moved since
 };
 
 }  // namespace
@@ -155,8 +155,8 @@ StepsTogether fit_together(const RateStateData& data, LoadPointSource source, co
   return Together(data, source, options, states).run();
 }
 
-double p_value_of_more(const RateStateProblem& fewer, const Minimum& fewer_minimum, const RateStateProblem& more,
-                       const Minimum& more_minimum, const RateStateFit& fit, std::size_t values) {
+double p_value_of_more(const RateStateProblem& fewer, const Solution& fewer_minimum, const RateStateProblem& more,
+                       const Solution& more_minimum, const RateStateFit& fit, std::size_t values) {
   const double below = log_likelihood_below(more, more_minimum, fewer, fewer_minimum, fit);
   if (!std::isfinite(below)) return std::nan("");
   const auto compared = static_cast<double>(values);

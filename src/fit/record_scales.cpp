@@ -1,4 +1,4 @@
-#include "record_scales.hpp"
+#include "observing.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "reduced.hpp"
+#include "observing.hpp"
 
 #include <algorithm>
 #include <cmath>

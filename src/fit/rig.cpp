@@ -12,8 +12,6 @@
 #include "force_balance.hpp"
 #include "kinematics/corrections.hpp"
 #include "limits.hpp"
-#include "rig_messages.hpp"
-#include "rig_solution.hpp"
 #include "tribofit/statistics/distributions.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/standard_error_of_mean.hpp"
@@ -192,7 +190,7 @@ void judge(const BalanceSolution& solution, RigFit& fit) {
     fit.reason = "the block moves too little, compared with the noise, to determine mass, damping and stiffness";
     return;
   }
-  fit.reason = rig::why_impossible(fit);
+  fit.reason = why_impossible(fit);
   fit.determined = fit.reason.empty();
 }
 
@@ -257,7 +255,7 @@ RigFit identify_rig(const Motion& motion, const Segmentation& segmentation, cons
       instruments.force_sensor.mass_below.has_value() && load.known && motion.velocity_kind == VelocityKind::block;
   if (segmentation.kind == MotionKind::always_sticking) {
     from_stick_alone(motion, load, fit);
-    rig::add_messages(motion, segmentation, instruments, fit);
+    add_messages(motion, segmentation, instruments, fit);
     return fit;
   }
   const double period = period_guess(motion, segmentation);
@@ -282,7 +280,7 @@ RigFit identify_rig(const Motion& motion, const Segmentation& segmentation, cons
   add_derived(fit);
   add_mass_below(instruments, fit);
   add_systematic(instruments, load, solution.per_delay, fit);
-  rig::add_messages(motion, segmentation, instruments, fit);
+  add_messages(motion, segmentation, instruments, fit);
   return fit;
 }
 

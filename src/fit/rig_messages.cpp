@@ -1,15 +1,14 @@
-#include "rig_messages.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "force_balance.hpp"
 #include "limits.hpp"
 #include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
-namespace tribofit::rig {
+namespace tribofit {
 namespace {
 
 double t_of(const RigValue& v) {
@@ -171,4 +170,4 @@ void add_messages(const Motion& motion, const Segmentation& segmentation, const 
   add_about_stiffness(motion, instruments, fit);
 }
 
-}  // namespace tribofit::rig
+}  // namespace tribofit

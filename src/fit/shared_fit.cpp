@@ -6,7 +6,7 @@
 
 #include "fit_steps.hpp"
 #include "limits.hpp"
-#include "reduced.hpp"
+#include "observing.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
@@ -92,7 +92,7 @@ std::vector<std::vector<double>> starts_of(const Problem& problem, const Bounds&
   return out;
 }
 
-Minimum solve(const Problem& problem, const std::vector<double>& start, const SolverOptions& options) {
+Solution solve(const Problem& problem, const std::vector<double>& start, const SolverOptions& options) {
   std::vector<ResidualPart> parts;
   for (const Member& member : problem.members)
     parts.push_back({&member.residuals, std::sqrt(member.weight), member.index});
@@ -110,11 +110,11 @@ std::vector<double> best_of_starts(const Problem& problem, const std::vector<std
     residuals.emplace_back(problem.model, observations, some_slips(observations, values));
     parts.push_back({&residuals.back(), std::sqrt(member.weight), member.index});
   }
-  Minimum best;
+  Solution best;
   best.cost = std::numeric_limits<double>::infinity();
   best.p = starts.front();
   for (const std::vector<double>& start : starts) {
-    Minimum next = minimize(parts, start, problem.lower, problem.upper, kQuickSearch);
+    Solution next = minimize(parts, start, problem.lower, problem.upper, kQuickSearch);
     if (next.cost < best.cost * (1 - 1e-6)) best = std::move(next);
   }
   return best.p;
@@ -144,7 +144,7 @@ RecordsFit fit_sharing_records(const FrictionModel& model, std::span<const Shari
     if (is_settled) break;
   }
   whiten_at(problem, values);
-  Minimum result = solve(problem, values, {.relative_cost = 1e-13});
+  Solution result = solve(problem, values, {.relative_cost = 1e-13});
   RecordsFit out;
   out.converged = result.converged;
   out.message = std::move(result.message);

@@ -1,4 +1,4 @@
-#include "slip_ranges.hpp"
+#include "observing.hpp"
 
 #include <algorithm>
 #include <boost/random/mersenne_twister.hpp>

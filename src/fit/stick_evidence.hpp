@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "tribofit/fit/observations.hpp"
+#include "tribofit/fit/fit.hpp"
 #include "tribofit/friction/creep.hpp"
 
 namespace tribofit {
@@ -25,5 +25,15 @@ Eigen::VectorXd stick_velocities(const StickCreep& stick, std::size_t first);
 /// motion: with no high-pass undone; at_least: by how much the spin must fit better (chi-squared). False where the
 /// noise is not known.
 bool spins_rather_than_sags(const Motion& motion, const Segmentation& segmentation, double at_least);
+
+/// Root mean square of measured minus predicted creep velocity in stick [m/s], for models that act in stick.
+/// Compared over tenths of each stick, where sensor noise has averaged out. NaN where no stick is long enough.
+double stick_creep_rmse(const FrictionModel& model, const std::vector<double>& p, const Motion& motion,
+                        const Segmentation& segmentation);
+
+/// What the creep of a model does not explain of the gap between v_b in stick and omega r, as a part of omega r, beyond
+/// what its law of creep may be wrong by; with its standard error over sticks. NaN where no stick is long enough.
+Estimate gap_beside_creep(const FrictionModel& model, const std::vector<double>& p, const Motion& motion,
+                          const Segmentation& segmentation);
 
 }  // namespace tribofit

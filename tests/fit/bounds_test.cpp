@@ -73,7 +73,7 @@ TEST(Bounds, TheOthersEndAtTheirMinimumWhereOneEndsOnItsBound) {
         tribofit::SolverOptions options;
         options.careful = careful;
         if (!careful) options.max_iterations = 40, options.relative_cost = 1e-8, options.relative_step = 1e-7;
-        const tribofit::Minimum found = tribofit::minimize(problem, start, lower, upper, options);
+        const tribofit::Solution found = tribofit::minimize(problem, start, lower, upper, options);
         const std::array<double, 3> slope = problem.slope(found.p);
         EXPECT_EQ(found.p[2], 0) << seed;
         EXPECT_GT(slope[2], 0) << seed;

@@ -65,7 +65,7 @@ TEST_P(Nist, CertifiedParametersFromBothStarts) {
   nist::with_model(problem.name, [&](auto model) {
     const NistResiduals residuals(problem, model);
     for (const std::vector<double>& start : problem.starts) {
-      const tribofit::Minimum result = tribofit::minimize(residuals, start);
+      const tribofit::Solution result = tribofit::minimize(residuals, start);
       EXPECT_TRUE(result.converged) << result.message;
       EXPECT_GE(nist::mean_log_relative_error(result.p, problem.certified), 9.0);
       if (problem.name == "Lanczos1") continue;  // its residuals are near rounding, and so are its deviations

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fit/model_residuals.hpp"
-#include "fit/reduced.hpp"
+#include "fit/observing.hpp"
 #include "fit/starts.hpp"
 #include "synthetic.hpp"
 #include "tribofit/fit/fit.hpp"

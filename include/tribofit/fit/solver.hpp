@@ -33,19 +33,18 @@ struct SolverOptions {
 };
 
 /// Where a search ended.
-struct Minimum {
+struct Solution {
   std::vector<double> p;
   double cost = 0;  ///< half the sum of squares
   bool converged = false;
-  int iterations = 0;
   std::string message;  ///< of the solver, for a person
 };
 
 /// Least squares by Levenberg-Marquardt (Ceres, dense QR), within bounds where they are given.
 /// Parameters with lower == upper are held. A problem that cannot be solved is a result with converged == false.
 /// Throws Stopped within a StopScope that says so, and so does the other.
-Minimum minimize(const Residuals& problem, std::span<const double> start, std::span<const double> lower = {},
-                 std::span<const double> upper = {}, const SolverOptions& options = {});
+Solution minimize(const Residuals& problem, std::span<const double> start, std::span<const double> lower = {},
+                  std::span<const double> upper = {}, const SolverOptions& options = {});
 
 /// Residuals that know a part of all values only, as those of one record do of several that share parameters.
 struct ResidualPart {
@@ -57,7 +56,7 @@ struct ResidualPart {
 /// Least squares of all parts together, within bounds. Values that one part alone depends on are eliminated part by
 /// part (Schur complement), and of its residuals a part keeps as many rows as it has parameters, and one: cost and
 /// memory are linear in parts.
-Minimum minimize(std::span<const ResidualPart> parts, std::span<const double> start, std::span<const double> lower,
-                 std::span<const double> upper, const SolverOptions& options = {});
+Solution minimize(std::span<const ResidualPart> parts, std::span<const double> start, std::span<const double> lower,
+                  std::span<const double> upper, const SolverOptions& options = {});
 
 }  // namespace tribofit
