@@ -175,7 +175,7 @@ std::vector<double> grid_of(const Parameter& parameter, double lower, double upp
 
 /// Slips that must lie on either side of a change, of n; of a few slips a quarter.
 std::size_t least_beside_change(std::size_t n) {
-  return std::min(limits::kFewestBesideChange, std::max<std::size_t>(1, n / 4));
+  return std::min(limits::kCyclesOfBlock, std::max<std::size_t>(1, n / 4));
 }
 
 /// Times at which friction may have stepped: about the change point that explains most of the levels of the cycles
@@ -265,8 +265,7 @@ ParameterStarts starts_of_parameter(const Parameter& parameter, AllowedRange bou
 }  // namespace
 
 std::string too_few_revolutions(double recorded, const EffectInfo& info) {
-  const std::string needed =
-      info.excitation.revolutions == 2 ? "two" : general(info.excitation.revolutions);
+  const std::string needed = info.excitation.revolutions == 2 ? "two" : general(info.excitation.revolutions);
   return fmt::format("the record holds {} revolutions of the disc; {} are needed", fixed(recorded, 1), needed);
 }
 

@@ -12,7 +12,7 @@ namespace tribofit {
 namespace {
 
 bool is_named(const Share& s) {
-  return s.share >= diagnosis::limits::kShareWorthNaming && !(s.p_value > diagnosis::limits::kChanceOfShare);
+  return s.share >= diagnosis::limits::kShareWorthNaming && !(s.p_value > diagnosis::limits::kChanceOfPossible);
 }
 
 }  // namespace
@@ -84,7 +84,7 @@ double error_of_share(double share, double held_out_rmse, double floor_rmse) {
 }
 
 bool is_confirmed(const Confirmation& c) {
-  return c.p_value < diagnosis::limits::kChanceOfConfirmation && c.final_rmse < c.base_rmse;
+  return c.p_value < diagnosis::limits::kChanceOfPossible && c.final_rmse < c.base_rmse;
 }
 
 bool contradicts_law(const Confirmation& c) {

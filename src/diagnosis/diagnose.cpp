@@ -186,7 +186,8 @@ std::vector<Rung> rungs_of(const Ladder& ladder, const std::vector<Candidate>& a
 bool is_most_left(const std::vector<Fit>& fits, double floor) {
   const double first = fits.front().error.held_out_rmse, last = fits.back().error.held_out_rmse;
   const bool clear = last > kAtFloor * floor && last - limits::kClearOfFloor * held_out_std_error(fits.back()) > floor;
-  return fits.size() > 1 && clear && last * last - floor * floor > limits::kMostLeft * (first * first - floor * floor);
+  return fits.size() > 1 && clear &&
+         last * last - floor * floor > limits::kMostOfTheError * (first * first - floor * floor);
 }
 
 /// Most of what the last rung leaves above the noise floor is a level of friction that wanders slowly.

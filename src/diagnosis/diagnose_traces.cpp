@@ -78,7 +78,7 @@ void share_friction_filter(const Instruments& instruments, std::vector<PreparedT
     variance += std::pow(own * motion.friction_low_pass.std_error, 2);
   }
   if (cycles_with == 0) return;
-  const bool is_filter = cycles_with >= limits::kPartThatShowsFilter * cycles;
+  const bool is_filter = cycles_with >= limits::kMostOfTheError * cycles;
   const UndoneDistortion shared =
       is_filter ? UndoneDistortion{sum / cycles_with, std::sqrt(variance) / cycles_with} : UndoneDistortion{};
   for (PreparedTrace& prepared : traces) {

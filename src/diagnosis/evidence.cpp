@@ -85,7 +85,7 @@ bool is_drawn_beyond(const Trial& trial, std::size_t k, const Parameter& q, doub
   step(static_cast<Eigen::Index>(k)) = limits::kInside * range * (trial.p[k] > middle ? -1 : 1);
   const double rise =
       least_squares_of(moved(trial.evidence, step), trial.free) - least_squares_of(trial.evidence, trial.free);
-  return rise > limits::kDrawnSigmas * limits::kDrawnSigmas * chance;
+  return rise > limits::kDeclaredSigmas * limits::kDeclaredSigmas * chance;
 }
 
 /// On its bound the size of an effect, or a time, length or frequency without which it is another effect, is not what

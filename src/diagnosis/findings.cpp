@@ -280,7 +280,7 @@ std::vector<Share> shares_of(const std::vector<Probe>& probes, double above) {
   for (const Probe& probe : probes) most = std::max(most, probe.fall);
   for (const Probe& probe : probes) {
     const double p = std::min(1.0, probe.p_value * static_cast<double>(probes.size()));
-    out.push_back({probe.variable, p < limits::kChanceOfShare ? std::max(0.0, probe.fall) / most : 0.0, p});
+    out.push_back({probe.variable, p < limits::kChanceOfPossible ? std::max(0.0, probe.fall) / most : 0.0, p});
   }
   std::stable_sort(out.begin(), out.end(), [](const Share& a, const Share& b) { return a.share > b.share; });
   return out;

@@ -52,7 +52,7 @@ std::vector<Two> pairs_of(const Pool& pool, const std::optional<std::size_t>& le
                           const std::vector<Candidate>& candidates, const Limits& least) {
   std::vector<Two> pairs;
   for (std::size_t a = 0; a < pool.promising; ++a) {
-    const std::size_t last = a < limits::kMostWithAll ? pool.all.size() : pool.promising;
+    const std::size_t last = a == 0 ? pool.all.size() : pool.promising;
     for (std::size_t b = a + 1; b < last; ++b) {
       const CandidateResult &one = *pool.all[a], &other = *pool.all[b];
       if (leader && (one.candidate == *leader || other.candidate == *leader)) continue;
@@ -66,7 +66,7 @@ std::vector<Two> pairs_of(const Pool& pool, const std::optional<std::size_t>& le
 }
 
 /// What linear steps promise of two candidates together, before both are fitted.
-struct PairPromise {
+struct PairScreening {
   std::vector<std::vector<double>> starts;  ///< of the model with both
   double places = 1;
   double squares = std::numeric_limits<double>::infinity();  ///< that linear steps leave, as Trial::squares has them
@@ -90,7 +90,7 @@ struct PairInputs {
 
 /// Adds what one of two candidates promises beside the other, as that was found.
 void add_promise(const PairInputs& in, const CandidateResult& beside, const CandidateResult& added,
-                 std::size_t most_starts, PairPromise& promise) {
+                 std::size_t most_starts, PairScreening& promise) {
   const Trial& base = coarse_of(beside);
   const LeastFalls enough = worth_fitting(in.context, base, base.whitening, in.least);
   SearchStart found =
@@ -106,7 +106,7 @@ void add_promise(const PairInputs& in, const CandidateResult& beside, const Cand
 /// Even if both together leave so little, what `added` explains beside `beside` may be chance: the p-value without any
 /// correlation. What acts through the level of break-away is judged in another way as well.
 bool may_be_chance(const PairInputs& in, const CandidateResult& beside, const CandidateResult& added,
-                   const PairPromise& promise) {
+                   const PairScreening& promise) {
   if (in.candidate(added).info.needs.stick_time) return false;
   const DiagnosisContext& context = in.context;
   const Trial& base = coarse_of(beside);
@@ -117,8 +117,8 @@ bool may_be_chance(const PairInputs& in, const CandidateResult& beside, const Ca
   return in.tests(promise.places) * fall_p_value(fall, 1, noise, 1, known) >= in.least.p_value;
 }
 
-PairPromise promise_of(const PairInputs& in, const Two& two) {
-  PairPromise promise;
+PairScreening promise_of(const PairInputs& in, const Two& two) {
+  PairScreening promise;
   add_promise(in, *two.a, *two.b, limits::kMostStarts, promise);
   add_promise(in, *two.b, *two.a, 1, promise);
   promise.is_worth_fitting = !promise.starts.empty() &&
@@ -129,7 +129,7 @@ PairPromise promise_of(const PairInputs& in, const Two& two) {
 
 /// Indices of the pairs that are to be fitted, the most promising first. None that could not do better than another one
 /// is promised to do.
-std::vector<std::size_t> to_be_fitted(const std::vector<PairPromise>& promises) {
+std::vector<std::size_t> to_be_fitted(const std::vector<PairScreening>& promises) {
   std::vector<std::size_t> order;
   for (std::size_t k = 0; k < promises.size(); ++k) {
     if (promises[k].is_worth_fitting) order.push_back(k);
@@ -152,8 +152,8 @@ Trial search_again(const DiagnosisContext& context, Trial full, const Candidate&
   const SearchStart search = search_start_of(context, level, base, candidate, residual_of(context, base), LeastFalls());
   const double explained = std::max(0.0, without - full.squares);
   if (search.starts.empty() || search.squares > full.row_squares + limits::kWorthFitting * explained) return full;
-  const Approach found = nearest(level, full.model, full.whitening, search.starts);
-  if (!(found.squares < full.row_squares)) return full;  // it leads back, or to somewhere worse
+  const Solution found = nearest(level, full.model, full.whitening, search.starts);
+  if (!(2 * found.cost < full.row_squares)) return full;  // it leads back, or to somewhere worse
   Trial again = try_model(context, level, full.model, found.p);
   const bool better = again.usable && again.held_out_squares < full.held_out_squares;
   return better ? std::move(again) : std::move(full);
@@ -174,7 +174,7 @@ HiddenPair judge_pair(const PairInputs& in, const Level& level, const Two& two, 
 
 /// A pair at low resolution. What is found of either without the other may be far off (the moment of a step), so each
 /// is looked for anew beside the other.
-HiddenPair fit_coarsely(const PairInputs& in, const Two& two, const PairPromise& promise) {
+HiddenPair fit_coarsely(const PairInputs& in, const Two& two, const PairScreening& promise) {
   const Trial &a = coarse_of(*two.a), &b = coarse_of(*two.b);
   const Candidate &first = in.candidate(*two.a), &second = in.candidate(*two.b);
   const FrictionModel model = with_effect(a.model, second.effect);
@@ -211,7 +211,7 @@ std::optional<HiddenPair> find_hidden_pair(const DiagnosisContext& context, cons
   const Pool pool = pool_of(context, top, judged, std::max(least_of_pair.size, least.least_size), candidates);
   const std::vector<Two> pairs = pairs_of(pool, least_of_pair.beside, candidates, least);
   const PairInputs in = {context, coarse_top, least_of_pair, candidates, least, static_cast<double>(pairs.size())};
-  std::vector<PairPromise> promises(pairs.size());
+  std::vector<PairScreening> promises(pairs.size());
   run_tasks(pairs.size(), context.threads, [&](std::size_t k) { promises[k] = promise_of(in, pairs[k]); });
   const std::vector<std::size_t> fitted = to_be_fitted(promises);
   std::vector<HiddenPair> found(fitted.size());

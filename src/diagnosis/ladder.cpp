@@ -151,7 +151,7 @@ Ladder start_ladder(const DiagnosisContext& context, Law law, const std::vector<
   ladder.law = law;
   LadderStep base;
   base.trial = try_base(context, context.fine, FrictionModel(law, {}, context.records.size()), threads);
-  for (const Candidate& effect : from_the_start) base.trial = try_with(context, context.fine, base.trial, effect).trial;
+  for (const Candidate& effect : from_the_start) base.trial = try_with(context, context.fine, base.trial, effect);
   look_beside(context, base);
   ladder.finished = !base.trial.usable;
   ladder.steps.push_back(std::move(base));

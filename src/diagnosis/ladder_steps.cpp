@@ -197,7 +197,7 @@ void withdraw(Ladder& ladder, double swinging) {
     // What acts by the levels of break-away alone hardly shows in squares that are whitened against their scatter.
     const double fall_of_all = ladder.steps[s - 1].trial.plain_held_out - ladder.steps[s].trial.plain_held_out;
     const bool is_little = !ladder.steps[s].by_level && fall < limits::kWithdrawnPart * shown &&
-                           left >= limits::kWithdrawnLittle * shown && left > 0;
+                           left >= limits::kLeastStructure * shown && left > 0;
     if (!is_little && !(fall_of_all < swinging)) continue;
     for (std::size_t k = s; k < ladder.steps.size(); ++k) ladder.withdrawn.push_back(*ladder.steps[k].added);
     ladder.last = ladder.steps[s].judged;

@@ -32,9 +32,7 @@ inline constexpr std::size_t kCoarseValues = 5000;                  ///< enough 
 inline constexpr std::size_t kFewestCoarse = 16, kMostCoarse = 40;  ///< a slip; 16 still show both of its branches
 
 // Blocks of cycles.
-inline constexpr std::size_t kCyclesOfBlock = 5;  ///< neighbours share slow scatter over about as many
-/// On either side of a change: the level of fewer is a draw of slow scatter (stick-slip with 1/f noise moves).
-inline constexpr std::size_t kFewestBesideChange = kCyclesOfBlock;
+inline constexpr std::size_t kCyclesOfBlock = 5;                   ///< neighbours share slow scatter over about as many
 inline constexpr std::size_t kFewestBlocks = 2, kMostBlocks = 10;  ///< ten: the usual compromise of cross-validation
 
 // What excites an effect.
@@ -49,21 +47,18 @@ inline constexpr double kPlacesInStroke = 50;
 inline constexpr std::size_t kFewestSticks = 6;  ///< for a spread over cycles
 
 // Instruments and the plateau.
-inline constexpr double kDeclaredSigmas = 3;  ///< standard uncertainties that are still possible
-inline constexpr double kLeastGap = 0.004;    ///< of omega r: a pad is seldom set more closely, 0.06 mm at 15 mm
+/// Standard uncertainties that are still possible, and the cost from which the data draw a parameter beyond its bound.
+inline constexpr double kDeclaredSigmas = 3;
+inline constexpr double kLeastGap = 0.004;  ///< of omega r: a pad is seldom set more closely, 0.06 mm at 15 mm
 inline constexpr double kSameSetting =
     1e-3;                                ///< part by which radii or speeds differ that are one: a quarter of that gap
 inline constexpr double kGapSigmas = 5;  ///< standard errors: plateaus of one record are not independent
 inline constexpr double kLargestRatio = 2.5;  ///< or its inverse: a diameter for a radius is two; beyond, another fault
 inline constexpr double kFallOfSag = 15;      ///< of chi-squared, by which a spin explains a sag: by chance once in 1e4
-/// Part of the cycles from which on a filter that they show is one of all runs. Less: one short run that shows one
-/// wrongly filters all; more: a few that are too noisy to show it keep it from all.
-inline constexpr double kPartThatShowsFilter = 0.5;
 inline constexpr double kLeastCoupling = 0.01;  ///< kappa: a load that follows friction by less is left as it is
 
 // Whether a candidate is plausible.
-inline constexpr double kInside = 0.1;     ///< of its range a parameter is moved off its bound, to see what that costs
-inline constexpr double kDrawnSigmas = 3;  ///< the cost from which the data draw it beyond the bound
+inline constexpr double kInside = 0.1;  ///< of its range a parameter is moved off its bound, to see what that costs
 inline constexpr double kAwayFromNone = 0.5;  ///< of its range the size of an effect is from nothing when it fills it
 
 // Whether a candidate passes.
@@ -91,9 +86,9 @@ inline constexpr double kFarPart = 0.08;        ///< of the best fall behind the
 inline constexpr double kFarNoise = 0.05;       ///< and of the squares of the noise
 /// Of the fastest slip: where a law that nothing holds at rest may fall; a factor of three is what a search bridges.
 inline constexpr double kFallsWithin[] = {0.01, 0.03, 0.1, 0.3};
-/// Candidates tried two at a time, ten pairs, and those that are tried with all others: slow effects of which one shows
-/// only beside another (drift beside a runout of few turns).
-inline constexpr std::size_t kMostInPairs = 5, kMostWithAll = 1;
+/// Candidates tried two at a time, ten pairs; the first is tried with all others: slow effects of which one shows only
+/// beside another (drift beside a runout of few turns).
+inline constexpr std::size_t kMostInPairs = 5;
 inline constexpr std::size_t kMostPairsFitted = 4;  ///< linear steps rank pairs well, but not always the first ones
 inline constexpr std::size_t kMostStarts = 2;       ///< the linear step ranks starts well, but not always the first two
 
@@ -101,31 +96,30 @@ inline constexpr std::size_t kMostStarts = 2;       ///< the linear step ranks s
 /// Of the fall of a rung: what the model below it gains as much from being fitted anew, was in a false minimum. Less
 /// than half, so that the rest is judged beside the right one. Strictly lower each time, so that it ends.
 inline constexpr double kLowerMinimum = 0.3;
-inline constexpr double kWithdrawnPart = 0.7;     ///< of what a free function explains: less, and the name is wrong
-inline constexpr double kWithdrawnLittle = 0.05;  ///< of it left in the end: others have explained it after all
-inline constexpr double kRivalPart = 0.5;         ///< of the fall of the one chosen: less does not catch up
+inline constexpr double kWithdrawnPart = 0.7;  ///< of what a free function explains: less, and the name is wrong
+inline constexpr double kRivalPart = 0.5;      ///< of the fall of the one chosen: less does not catch up
 /// Two effects of the same variable may each explain half of what a free function finds there, but not much less.
 inline constexpr double kHopelessPart = 0.35;
 inline constexpr double kStraight = 0.5;  ///< of a rise still to come at the fastest slip: a straight line, not a law
-/// Of all that v_r shows in stick beyond its noise a law of creep must explain most.
-inline constexpr double kCreepPart = 0.5;
 
 // What is possible, though not proven.
-inline constexpr double kChanceOfPossible = 0.05;  ///< p-value: one record in twenty would else be called unfinished
-inline constexpr double kPossiblePart = 0.3;       ///< of what is above the noise: less does not change the picture
-inline constexpr double kLeastPossible = 0.1;      ///< of the squares of the noise: less shows on no plot
+/// p-value: one record in twenty would else be called unfinished, or unconfirmed, or show a share of its error.
+inline constexpr double kChanceOfPossible = 0.05;
+inline constexpr double kPossiblePart = 0.3;   ///< of what is above the noise: less does not change the picture
+inline constexpr double kLeastPossible = 0.1;  ///< of the squares of the noise: less shows on no plot
 
 /// p-value: what is not plausible takes more evidence than a name, and no slow noise passes for it.
 inline constexpr double kChanceBeyondBounds = 0.001;
 
 // Whether a run that was held back bears a finding out.
-inline constexpr double kChanceOfConfirmation = 0.05;  ///< p-value: of those that do one in twenty fails by chance
 
 // What remains.
 inline constexpr double kChance = 0.01;            ///< p-value below which structure is not chance
-inline constexpr double kChanceOfShare = 0.05;     ///< for a share that is only shown
 inline constexpr double kShareWorthNaming = 0.05;  ///< of the error above the noise floor; less helps nobody
-inline constexpr double kMostOfTheError = 0.5;     ///< a share that is "most of the error"
+/// A share that is "most of the error": what is found of it, a law of creep of what v_r shows in stick beyond its
+/// noise. And part of the cycles from which on a filter that they show is one of all runs: one short run shows one
+/// wrongly, and a few are too noisy to show it.
+inline constexpr double kMostOfTheError = 0.5;
 /// Of the squares of the noise: smaller structure does not matter. What sampling leaves (DiagnosisContext::shared) has
 /// structure itself.
 inline constexpr double kLeastStructure = 0.05;
@@ -135,7 +129,6 @@ inline constexpr double kUnused = 1e-6;        ///< samples behind a value: one 
 inline constexpr double kFarAboveFloor = 1.5;  ///< times the noise floor, from which an error is unexplained
 /// The same once effects were added, whose scatter is in it, or where most of it wanders as slow noise does.
 inline constexpr double kFarAboveAfterEffects = 2;
-inline constexpr double kMostLeft = 0.5;  ///< of the squares above the noise floor: what was found is the smaller part
 /// Runs that are diagnosed by themselves where all together are not described: more cost time and say little more.
 inline constexpr std::size_t kMostSingleRuns = 8;
 inline constexpr double kClearOfFloor = 2;   ///< standard errors of the held-out error, from which it is not chance

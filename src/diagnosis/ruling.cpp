@@ -26,18 +26,19 @@ Trial fit_beside(const DiagnosisContext& context, const Law& law, const std::vec
   for (const Effect& effect : beside) {
     const std::size_t k = candidate_of(all, describe(effect).spelled());
     if (k == all.size() || !top.usable || !top.model.acts_with(effect)) continue;
-    top = try_with(context, context.fine, top, all[k]).trial;
+    top = try_with(context, context.fine, top, all[k]);
   }
   return top;
 }
 
 /// The trial with one effect more, searched for as a diagnosis does: among means over more samples where that shows it.
-Searched search_effect(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
-                       const Candidate& effect) {
+Trial search_effect(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
+                    const Candidate& effect) {
   if (effect.info.needs_full_resolution || !coarse_top.usable) return try_with(context, context.fine, top, effect);
-  Searched searched = try_with(context, context.coarse, coarse_top, effect);
-  searched.trial = try_model(context, context.fine, searched.trial.model, searched.trial.p);
-  return searched;
+  const Trial coarse = try_with(context, context.coarse, coarse_top, effect);
+  Trial fine = try_model(context, context.fine, coarse.model, coarse.p);
+  fine.places = coarse.places;
+  return fine;
 }
 
 }  // namespace
@@ -66,9 +67,9 @@ Ruling rule_between(std::span<const Record> records, const Law& law, const std::
   for (std::size_t e = 0; e < effects.size(); ++e) {
     const std::size_t k = candidate_of(all, out.effects[e].spelled);
     if (k == all.size() || !all[k].untestable.empty() || !top.model.acts_with(all[k].effect)) continue;
-    Searched searched = search_effect(context, top, coarse_top, all[k]);
-    const double tests = searched.places * static_cast<double>(all.size());
-    judged.push_back(compare(context, context.fine, top, std::move(searched.trial), all[k], tests, Limits{}));
+    Trial found = search_effect(context, top, coarse_top, all[k]);
+    const double tests = found.places * static_cast<double>(all.size());
+    judged.push_back(compare(context, context.fine, top, std::move(found), all[k], tests, Limits{}));
     judged.back().candidate = k;
     asked.push_back(e);
   }

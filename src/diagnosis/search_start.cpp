@@ -36,7 +36,7 @@ std::vector<double> with_amplitude_and_phase(const ModelResiduals& residuals, co
 namespace {
 
 /// A start of a model with one effect more, and what a linear step from there promises.
-struct Promise {
+struct RankedStart {
   std::vector<double> start;  ///< of all parameters
   std::vector<double> place;  ///< the values of the effect that are no phases
   double score = 0, squares = 0;
@@ -44,9 +44,9 @@ struct Promise {
 
 /// The start with the effect's `values` among the parameters of the base: the model has an order of its own. Phases
 /// that further records have are those of the first.
-Promise start_with(const std::vector<double>& base, const FrictionModel& model, const EffectInfo& effect,
-                   const std::vector<double>& values, const Bounds& bounds) {
-  Promise promise;
+RankedStart start_with(const std::vector<double>& base, const FrictionModel& model, const EffectInfo& effect,
+                       const std::vector<double>& values, const Bounds& bounds) {
+  RankedStart promise;
   const std::size_t offset = model.offset_of(effect.key), added = model.count_of(effect.key);
   promise.start = base;
   promise.start.insert(promise.start.begin() + static_cast<std::ptrdiff_t>(offset), added, 0.0);
@@ -102,11 +102,11 @@ std::optional<StepSquares> squares_of_step(const ModelResiduals& residuals, cons
 }
 
 /// The start of one place in which every record has the phases with which it leaves least, of those that were tried.
-std::optional<Promise> combined_phases(const FrictionModel& model, const ModelResiduals& residuals,
-                                       const Observations& observations, const std::vector<Promise>& tried) {
-  std::optional<Promise> best;
+std::optional<RankedStart> combined_phases(const FrictionModel& model, const ModelResiduals& residuals,
+                                           const Observations& observations, const std::vector<RankedStart>& tried) {
+  std::optional<RankedStart> best;
   std::vector<double> least(model.records(), std::numeric_limits<double>::infinity());
-  for (const Promise& one : tried) {
+  for (const RankedStart& one : tried) {
     const std::vector<double> squares = residuals.squares(one.start.data());
     if (squares.empty()) continue;
     if (!best) best = one;
@@ -126,10 +126,10 @@ std::optional<Promise> combined_phases(const FrictionModel& model, const ModelRe
 
 /// Of the starts in one place, which differ in their phases alone, the one that is lowest now: a linear step promises
 /// the same from every phase, and costs a few times as much as a look at the squares.
-std::optional<Promise> nearest_phase(const ModelResiduals& residuals, const std::vector<Promise>& tried) {
+std::optional<RankedStart> nearest_phase(const ModelResiduals& residuals, const std::vector<RankedStart>& tried) {
   if (tried.size() == 1) return tried[0];
-  std::map<double, const Promise*> by_squares;
-  for (const Promise& one : tried) {
+  std::map<double, const RankedStart*> by_squares;
+  for (const RankedStart& one : tried) {
     const double here = residuals.white_squares(one.start.data());
     if (std::isfinite(here)) by_squares.emplace(here, &one);
   }
@@ -144,10 +144,10 @@ SearchStart search_start_of(const DiagnosisContext& context, const Level& level,
   const ModelResiduals residuals = residuals_of(level.observations, model, base.whitening);
   const Bounds bounds = level.bounds_of(model);
   const Starts starts = starts_of(candidate, context.records, context.fine.observations, residual);
-  std::vector<Promise> promises;
+  std::vector<RankedStart> promises;
   const std::vector<std::vector<double>> bases = bases_of_search(level, base);
   std::optional<double> rigid;
-  const auto try_start = [&](Promise promise) {
+  const auto try_start = [&](RankedStart promise) {
     if (!rigid) rigid = all_sticks(residuals.stick_squares(promise.start.data())).rigid;
     const std::optional<StepSquares> step = squares_of_step(residuals, promise.start, bounds, *rigid);
     if (!step) return;
@@ -155,10 +155,10 @@ SearchStart search_start_of(const DiagnosisContext& context, const Level& level,
     promise.score = step->there + 1e-2 * step->here;  // the start that is lower now is the nearer one
     promises.push_back(std::move(promise));
   };
-  std::map<std::vector<double>, std::vector<Promise>> places;
+  std::map<std::vector<double>, std::vector<RankedStart>> places;
   for (const auto& values : starts.values) {
     for (std::size_t from = 0; from < bases.size(); ++from) {
-      Promise promise = start_with(bases[from], model, candidate.info, values, bounds);
+      RankedStart promise = start_with(bases[from], model, candidate.info, values, bounds);
       promise.place.push_back(static_cast<double>(from));
       places[promise.place].push_back(std::move(promise));
     }
@@ -170,7 +170,7 @@ SearchStart search_start_of(const DiagnosisContext& context, const Level& level,
     if (best) try_start(std::move(*best));
   }
   std::stable_sort(promises.begin(), promises.end(),
-                   [](const Promise& a, const Promise& b) { return a.score < b.score; });
+                   [](const RankedStart& a, const RankedStart& b) { return a.score < b.score; });
   SearchStart found;
   found.places = starts.places * static_cast<double>(bases.size());
   if (promises.empty()) return found;
@@ -187,12 +187,14 @@ SearchStart search_start_of(const DiagnosisContext& context, const Level& level,
   return found;
 }
 
-Searched try_with(const DiagnosisContext& context, const Level& level, const Trial& base, const Candidate& effect) {
+Trial try_with(const DiagnosisContext& context, const Level& level, const Trial& base, const Candidate& effect) {
   const SearchStart search = search_start_of(context, level, base, effect, residual_of(context, base), LeastFalls());
   const FrictionModel model = with_effect(base.model, effect.effect);
-  if (search.starts.empty()) return {try_base(context, level, model), search.places};
-  return {try_model(context, level, model, nearest_if_several(level, model, base.whitening, search.starts)),
-          search.places};
+  Trial out = search.starts.empty()
+                  ? try_base(context, level, model)
+                  : try_model(context, level, model, nearest_if_several(level, model, base.whitening, search.starts));
+  out.places = search.places;
+  return out;
 }
 
 }  // namespace tribofit::diagnosis

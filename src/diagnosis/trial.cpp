@@ -46,7 +46,7 @@ void pay_for_scatter(const ModelResiduals::Whitening& whitening, std::vector<dou
 /// explain most; less than that, something else moves the block.
 bool is_earned(const ModelResiduals::StickSquares& stick, double noise) {
   const double gain = stick.rigid - stick.left, shown = stick.rigid - stick.rows * noise * noise;
-  return gain <= 0 || gain >= limits::kCreepPart * shown;
+  return gain <= 0 || gain >= limits::kMostOfTheError * shown;
 }
 
 /// Part to which squares of stick are weakened so that a law of creep leaves no more than noise there: none is exact,
@@ -159,14 +159,14 @@ Trial try_model(const DiagnosisContext& context, const Level& level, const Frict
   return trial;
 }
 
-Approach nearest(const Level& level, const FrictionModel& model, const ModelResiduals::Whitening& whitening,
+Solution nearest(const Level& level, const FrictionModel& model, const ModelResiduals::Whitening& whitening,
                  const std::vector<std::vector<double>>& starts) {
   const Bounds bounds = level.bounds_of(model);
   const ModelResiduals residuals = residuals_of(level.observations, model, whitening);
-  Approach best;
+  Solution best;
   for (const auto& start : starts) {
     Solution next = minimize(residuals, start, bounds.lower, bounds.upper, search_of(8));
-    if (best.p.empty() || 2 * next.cost < best.squares) best = {std::move(next.p), 2 * next.cost};
+    if (best.p.empty() || next.cost < best.cost) best = std::move(next);
   }
   return best;
 }

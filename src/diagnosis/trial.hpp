@@ -33,6 +33,7 @@ struct Trial {
   std::vector<double> p;             ///< SI
   std::vector<bool> at_bound, free;  ///< of each parameter: whether a bound holds it, or the data do
   bool usable = false;               ///< finite
+  double places = 1;                 ///< independent places that were looked at to find it
   ModelResiduals::Whitening whitening;
   CycleEvidence evidence;           ///< at p
   std::vector<double> held_out;     ///< squares of each cycle, from parameters that the other blocks suggest
@@ -108,14 +109,8 @@ double noise_of(const Level& level, const Trial& trial);
 Trial try_model(const DiagnosisContext& context, const Level& level, const FrictionModel& model,
                 std::vector<double> start, int threads = 1);
 
-/// Where a few steps from a start lead, and the squares of all rows there.
-struct Approach {
-  std::vector<double> p;
-  double squares = 0;
-};
-
 /// The start from which a few steps lead lowest, after those steps.
-Approach nearest(const Level& level, const FrictionModel& model, const ModelResiduals::Whitening& whitening,
+Solution nearest(const Level& level, const FrictionModel& model, const ModelResiduals::Whitening& whitening,
                  const std::vector<std::vector<double>>& starts);
 
 /// The same, but a single start as it is.
@@ -151,13 +146,8 @@ SearchStart search_start_of(const DiagnosisContext& context, const Level& level,
 /// The model of a trial with one effect more.
 FrictionModel with_effect(const FrictionModel& model, const Effect& effect);
 
-struct Searched {
-  Trial trial;
-  double places = 1;  ///< independent places that were looked at
-};
-
 /// The trial's model with one effect more, fitted from the best of its starts.
-Searched try_with(const DiagnosisContext& context, const Level& level, const Trial& base, const Candidate& effect);
+Trial try_with(const DiagnosisContext& context, const Level& level, const Trial& base, const Candidate& effect);
 
 /// Model, parameters and whitening of a trial without one of its effects; nothing is fitted anew.
 Trial without_effect(const Trial& full, std::string_view key);

@@ -181,7 +181,7 @@ void joint_estimate(FitContext& context, Fit& fit) {
   const std::optional<ChangePoint> change = change_point_of(context.model);
   const std::vector<std::size_t> all = all_slips(context.observations);
   const std::optional<Observations> means =
-      reduced_for_search(context.model, context.observations, look ? kValuesOfLook : kValuesOfSearch);
+      reduced_for_search(context.model, context.observations, look ? kValuesOfSearch / 2 : kValuesOfSearch);
   const Observations& few = means ? *means : context.observations;
   const std::vector<std::size_t> slips = means ? all : some_slips(few, look ? kWholeSlipsOfLook : kWholeSlips);
   Bounds held = context.bounds;
@@ -237,9 +237,9 @@ bool estimate_by_extremes(FitContext& context, Fit& fit) {
 }  // namespace
 
 bool are_alike(const std::vector<double>& a, const std::vector<double>& b) {
-  constexpr double kSame = 1e-6;
-  return std::equal(a.begin(), a.end(), b.begin(),
-                    [](double x, double y) { return std::abs(x - y) <= kSame * std::max(std::abs(x), std::abs(y)); });
+  return std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) {
+    return std::abs(x - y) <= 10 * kQuickSearch.relative_step * std::max(std::abs(x), std::abs(y));
+  });
 }
 
 std::vector<std::size_t> some_slips(const Observations& observations, std::size_t values) {

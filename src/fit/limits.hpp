@@ -9,6 +9,11 @@
 
 namespace tribofit {
 
+/// Standard errors beyond which it is not chance, of one test a record: that mass and stiffness are not zero, that the
+/// levels of neighbouring slips differ, so that noise raises whole slips. Less: white noise passes for it now and then;
+/// more: laws are mistaken for one another in 1/f noise.
+inline constexpr double kClearOfZero = 3;
+
 // Cycles that carry a fit, and samples of a slip that show a curve.
 using segmentation::kFewestCycles;
 using segmentation::kShortestSlip;
@@ -49,10 +54,8 @@ inline constexpr double kLineInNoise = 0.3, kLeftBesideLine = 0.05;
 inline constexpr double kBelowLineInStick = 0.9;
 
 /// Sine squared of the angle between what a break-away and what slow noise do to a slip, from which the two are
-/// distinct: less, and rounding decides. Standard errors by which the levels of neighbouring slips must differ by more
-/// than chance would make them, before noise that raises whole slips is there: it is one test a model. Less: white
-/// noise passes for it now and then; more: laws are mistaken for one another in 1/f noise.
-inline constexpr double kLeastIndependence = 1e-6, kSigmasOfSlowNoise = 3;
+/// distinct: less, and rounding decides.
+inline constexpr double kLeastIndependence = 1e-6;
 
 /// Part of a second difference of friction by which what is between two samples is off a straight line: an eighth, of
 /// a parabola. How a record without noise was made, and sampled, is not known better. Samples between two such
@@ -72,7 +75,6 @@ inline constexpr double kLoudest = 3;
 /// few Gauss-Newton steps (up to 20 standard errors for a memory of a thirtieth of a slip). Fewer: a start may be led
 /// into another valley.
 inline constexpr double kValuesOfSearch = 100;
-inline constexpr double kValuesOfLook = 50;
 /// Iterations behind which a look compares its starts. Fewer: a start that is slow at first is lost; more: time. With
 /// these, 147 sets of effects on each of three simulated records were described as well as with twelve, to 3 %.
 inline constexpr int kIterationsToCompare = 5;
@@ -110,9 +112,9 @@ inline constexpr double kLeastStickTime = 0.1;
 
 // ---- the rig
 
-/// Standard errors from zero that mass and stiffness must be, part of what a channel has for itself that may be noise,
+/// Part of what a channel has for itself that may be noise,
 /// and samples in a free period: with fewer the derivative is that of another motion.
-inline constexpr double kClearOfZero = 3, kMostNoiseOfRig = 0.3, kShortestPeriod = 8;
+inline constexpr double kMostNoiseOfRig = 0.3, kShortestPeriod = 8;
 /// Chance of a false remark about one record, part of the damping that makes one, and of the stiffness: less is no news
 /// about a gain or a radius.
 inline constexpr double kChanceOfRemark = 1e-3, kPartOfDamping = 0.1, kPartOfStiffness = 0.005;
@@ -183,14 +185,14 @@ inline constexpr std::size_t kMostLookedAt = 8192;
 /// Part of the sliding at one speed that shows the level before the next step, and that belongs to the step before; of
 /// the sliding before the first step as much as is slid behind it, or lasts this part of its time: run-in is no level.
 /// Larger: steps whose decay is long lose their end; smaller: the level before a step is less well known.
-inline constexpr double kPartOfSlidingBehind = 0.7, kPartOfSlidingBefore = 0.3;
+inline constexpr double kPartOfSlidingBehind = 0.7;
 /// Mean square that a fit of all steps leaves, over that of the first step alone, from which on it has not found its
 /// minimum: near the critical stiffness friction swings, and few starts lead there.
 inline constexpr double kFarFromMinimum = 4;
 /// Logarithm of the ratio of speeds between which there is no step: a drive that still settles.
 inline constexpr double kNoStep = 0.05;
 /// Samples of a step, without which it shows nothing: a constant, a line and four parameters are asked of it.
-inline constexpr std::size_t kFewestBeforeStep = 5, kFewestBehindStep = 10;
+inline constexpr std::size_t kFewestBehindStep = 10;
 /// Values that a step is fitted to: neighbours are put together where there are more, which moves the parameters by
 /// less than 1 % of their errors; and that the search begins with.
 inline constexpr std::size_t kValuesOfStep = 1500, kValuesOfStepSearch = 150;
@@ -198,7 +200,7 @@ inline constexpr std::size_t kValuesOfStep = 1500, kValuesOfStepSearch = 150;
 /// elsewhere, as a root of mean squares, from which on a law lacks something, the chance that noise makes it so (none
 /// of 60 simulated records with wandering noise was said to lack anything), and independent values without which it
 /// cannot be judged. Smaller: drift of the measurement is blamed on the law; larger: a law that fails a little passes.
-inline constexpr double kAdapted = 5, kMuchLeft = 1.15, kChanceOfExcess = 1e-3, kFewestOfExcess = 5;
+inline constexpr double kAdapted = 5, kMuchLeft = 1.15;
 /// What wanders over the noise of a sample from which on it is said where that cannot be judged.
 inline constexpr double kMuchWander = 4;
 /// Decades that the times of holds must span for a healing rate: a factor of two.
@@ -209,12 +211,12 @@ inline constexpr double kHoldAsRatio = 4.6;
 inline constexpr double kSecondDistance = 8;
 /// By which the time of a step may be wrong, over the shorter sliding beside it where a person has noted it, and over
 /// the sampling interval where it was read from a recorded speed.
-inline constexpr double kSlackOfStated = 0.1, kSlackOfSpeed = 1;
+inline constexpr double kSlackOfStated = 0.1;
 /// The same, over the sliding, where a recorded displacement turns: drives run up, catch up and have play, so that
 /// friction answered up to 0.004 of the sliding later on real records; and the chance from which on it is moved.
 /// Smaller: a later answer is taken for a softer machine; larger: what else friction does beside a step is taken for a
 /// later one.
-inline constexpr double kSlackOfDisplacement = 0.05, kChanceOfMovedStep = 1e-3;
+inline constexpr double kSlackOfDisplacement = 0.05;
 /// Chance that noise makes two states describe the steps so much better, below which they do, and error of a, and of b
 /// or D_c of either, over its value above which nothing is known of it. The chance is small as noise that wanders is
 /// much like the answer of a second state; data/validation/velocity-steps.md has how often either was taken for the
@@ -222,8 +224,7 @@ inline constexpr double kSlackOfDisplacement = 0.05, kChanceOfMovedStep = 1e-3;
 inline constexpr double kChanceOfSecondState = 1e-8, kVagueOfState = 0.5;
 /// Bounds of a, b and k over the range of friction, and of D_c and k over what is slid in a sampling interval and in
 /// the longest step: nothing of the response is left to see beyond them.
-inline constexpr double kLeastOfRange = 1e-5, kLargestOfRange = 30, kLeastOfSampling = 0.03, kMostOfSliding = 10,
-                        kStiffestOfSampling = 30;
+inline constexpr double kLeastOfRange = 1e-5, kLargestOfRange = 30, kLeastOfSampling = 0.03, kMostOfSliding = 10;
 /// Upper over lower end of an interval of D_c or k from which the value is not known: not to a factor of two.
 inline constexpr double kWidestInterval = 4;
 /// Degrees of freedom beyond which more make no difference.

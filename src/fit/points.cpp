@@ -96,14 +96,13 @@ class FreedomOfVariances {
 }  // namespace
 
 Spread spread_of_points(const CycleEvidence& evidence, double squares, const std::vector<bool>& free) {
-  constexpr double kLeastLeft = 1e-6;  // of a point that alone determines a parameter
   const auto count = static_cast<double>(evidence.curvature.size());
   const double most = std::max(1.0, count - static_cast<double>(std::count(free.begin(), free.end(), true)));
   const Eigen::MatrixXd inverse = inverse_over(evidence.total, free);
   Eigen::MatrixXd robust = Eigen::MatrixXd::Zero(inverse.rows(), inverse.rows());
   FreedomOfVariances freedom(inverse);
   for (std::size_t c = 0; c < evidence.curvature.size(); ++c) {
-    const double left = std::max(kLeastLeft, 1 - (inverse * evidence.curvature[c]).trace());
+    const double left = std::max(kLeastWeight, 1 - (inverse * evidence.curvature[c]).trace());
     const Eigen::VectorXd pull = inverse * evidence.gradient[c];
     robust += pull * pull.transpose() / left;
     freedom.add(evidence.curvature[c], left);

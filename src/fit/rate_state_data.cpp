@@ -118,7 +118,7 @@ void find_steps(const std::vector<Sliding>& slidings, bool starts, RateStateData
     step.displacement = data.displacement_at(step.time);
     // What was recorded from its begin on slides steadily; behind a run-up or a rest it has yet to.
     const double own = j == 0 && from.phase == 0 && !starts ? 1 : 1 - kPartOfSlidingBehind;
-    const double as_long = kPartOfSlidingBefore * std::min(from.duration(), to.duration()) * from.speed;
+    const double as_long = (1 - kPartOfSlidingBehind) * std::min(from.duration(), to.duration()) * from.speed;
     const double before = std::min(own * from.length(), std::max(as_long, to.length()));
     step.from = from.end - before / from.speed;
     step.to = to.end - (j + 2 < slidings.size() ? (1 - kPartOfSlidingBehind) * to.duration() : 0);
@@ -240,14 +240,14 @@ RateStateData rate_state_data(const Motion& motion, const RateStateOptions& opti
       samples.friction.push_back(motion.friction[i]);
     }
     step.samples = samples.time.size();
-    if (earlier < kFewestBeforeStep || step.samples - earlier < kFewestBehindStep) {
+    if (2 * earlier < kFewestBehindStep || step.samples - earlier < kFewestBehindStep) {
       messages.push_back(fmt::format("the step at {} s was not used: {} samples before and {} behind it",
                                      general(step.time, 6), earlier, step.samples - earlier));
       continue;
     }
     step.interval = quantile(std::move(intervals), 0.1);
     if (motion.load_point_source == LoadPointSource::stated) step.slack = kSlackOfStated * shorter_beside(step);
-    if (motion.load_point_source == LoadPointSource::speed) step.slack = kSlackOfSpeed * around;
+    if (motion.load_point_source == LoadPointSource::speed) step.slack = around;
     data.begins.push_back(data.time.size());
     data.steps.push_back(step);
     data.before.push_back(before[s]);

@@ -110,7 +110,7 @@ double adapting_distance(const RateStateData& data, std::size_t states, const Ra
 void say_excess(const FitErrors& found, double distance, const std::vector<Eigen::Index>& free, RateStateFit& fit) {
   const std::optional<Excess> excess = found.excess_behind_steps(distance, free);
   if (excess) {
-    fit.lacks = excess->p_value < kChanceOfExcess && excess->factor > kMuchLeft;
+    fit.lacks = excess->p_value < kChanceOfRemark && excess->factor > kMuchLeft;
     if (*fit.lacks)
       fit.messages.push_back(fmt::format(
           "what is left is {} times as large over the first {} um behind the steps as elsewhere: this law does "

@@ -109,7 +109,7 @@ std::optional<Excess> FitErrors::excess_behind_steps(double distance, const std:
     }
   }
   independent[1] -= static_cast<double>(begins_.size() * static_cast<std::size_t>(problem_.design_of(0).cols()));
-  if (independent[0] < kFewestOfExcess || independent[1] < kFewestOfExcess) return std::nullopt;
+  if (independent[0] < kFewestFreeVariances || independent[1] < kFewestFreeVariances) return std::nullopt;
   const double ratio = squares[0] / values[0] / (squares[1] / values[1]);
   if (!(ratio > 0) || !std::isfinite(ratio)) return std::nullopt;
   return Excess{std::sqrt(ratio), f_p_value(ratio, independent[0], independent[1])};

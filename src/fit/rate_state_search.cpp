@@ -212,7 +212,7 @@ RateStateUnknowns unknowns_of(const RateStateData& data, std::size_t states, con
   }
   const char* stiffness = data.is_force ? "stiffness of the machine" : "stiffness of the machine per normal force";
   add(out, parameter_of("k", stiffness, data.is_force ? "N/um" : "1/um", 1 / kMicrometre), true,
-      kLeastOfRange * friction / longest, kStiffestOfSampling * friction / finest);
+      kLeastOfRange * friction / longest, kLargestOfRange * friction / finest);
   Scales scales = scales_of(data);
   if (!(scales.distance > 0)) scales.distance = 0.1 * longest;
   if (!(scales.stiffness > 0)) scales.stiffness = friction / (0.1 * longest);

@@ -117,7 +117,7 @@ class Together {
     const RateStateProblem fewer(out_.data, model, out_.all());
     const RateStateProblem more = fewer.with_data(moved);
     const RateStateFit fit = fit_from(more, out_.unknowns, behind);
-    return fit.converged && p_value_of_more(fewer, before, more, behind, fit, free) < kChanceOfMovedStep;
+    return fit.converged && p_value_of_more(fewer, before, more, behind, fit, free) < kChanceOfRemark;
   }
 
   void fit_laws() {

@@ -178,7 +178,7 @@ class HeldOut {
     for (const Part& part : parts) {
       const Observations& o = *part.member->record.observations;
       first_.push_back(fit_.cycle_squares.size());
-      blocks_.push_back(blocks_of(o, std::min(o.cycles, kFolds)));
+      blocks_.push_back(blocks_of(o, std::min(o.cycles, folds_)));
       fit_.cycle_squares.resize(fit_.cycle_squares.size() + o.cycles, 0.0);
       fit_.cycle_counts.resize(fit_.cycle_squares.size(), 0.0);
       for (const auto& slip : o.slips) {
@@ -192,13 +192,13 @@ class HeldOut {
 
   /// Cycles of all records with their held-out squares over the variance of their record.
   Fit run() {
-    for (std::size_t fold = 0; fold < kFolds; ++fold) hold_out(fold);
+    for (std::size_t fold = 0; fold < folds_; ++fold) hold_out(fold);
     fit_.error.held_out_rmse = std::sqrt(squares_ / counts_);
     return std::move(fit_);
   }
 
  private:
-  static constexpr std::size_t kFolds = 5;
+  const std::size_t folds_ = static_cast<std::size_t>(FitOptions().folds);
 
   void hold_out(std::size_t fold) {
     MatrixXd information = MatrixXd::Zero(common_.information.rows(), common_.information.cols());

@@ -73,7 +73,7 @@ double slow_noise_of_slips(const std::vector<Products>& slips, const Observation
   // Math. Stat. 12 (1941) 367).
   const auto n = static_cast<double>(levels.size());
   const double noise = left / freedom, by_chance = noise * spread / n;
-  if (!(steps.variance > by_chance * (1 + kSigmasOfSlowNoise * std::sqrt(3 / steps.count)))) return 0;
+  if (!(steps.variance > by_chance * (1 + kClearOfZero * std::sqrt(3 / steps.count)))) return 0;
   return std::min(steps.variance - by_chance, most / n) / noise;
 }
 

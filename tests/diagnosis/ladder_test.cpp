@@ -81,8 +81,8 @@ struct Made {
     step.added = added;
     for (const std::size_t k : judged) {
       const Trial& beside = ladder.top();
-      CandidateResult result = compare(context, context.fine, beside,
-                                       try_with(context, context.fine, beside, all[k]).trial, all[k], 1, Limits());
+      CandidateResult result =
+          compare(context, context.fine, beside, try_with(context, context.fine, beside, all[k]), all[k], 1, Limits());
       result.candidate = k;
       step.judged.push_back(std::move(result));
       if (k == added) step.trial = step.judged.back().trial;
@@ -113,17 +113,22 @@ CandidateResult passing(const Made& made, std::size_t candidate, double units, s
   return out;
 }
 
-/// What two trials must differ by to be distinguishable, in units of noise.
-double apart(const Made& made) {
-  return std::max(limits::kDistinguishable, limits::kDistinguishableSize * made.context.fine.samples);
+/// Differences in units of noise that decide nothing and that leave no doubt. With the right one of two models known
+/// the difference is d^2 -+ 2 d: 4 is one standard deviation from none, 200 is seven. Beside that a difference counts
+/// from some part of the squares of the noise: a thousandth shows on no plot, a hundredth does.
+double within_chance(const Made& made) {
+  return std::min(4.0, 1e-3 * made.context.fine.samples);
+}
+double beyond_doubt(const Made& made) {
+  return std::max(200.0, 1e-2 * made.context.fine.samples);
 }
 
 TEST(Choose, TheSimplestOfThoseThatDoAsWellLeadsAndTheOthersAreItsGroup) {
   const Made made;
   const std::vector<Candidate> all = candidates_of({"ringing", "viscous", "drift", "heating"});
-  const double d = apart(made);
-  std::vector<CandidateResult> judged = {passing(made, 0, 9000, 7), passing(made, 1, 9000 + 0.5 * d, 4),
-                                         passing(made, 2, 9000 + 1.5 * d, 4), passing(made, 3, 9000 - 3 * d, 5)};
+  const double near = within_chance(made), far = beyond_doubt(made);
+  std::vector<CandidateResult> judged = {passing(made, 0, 9000, 7), passing(made, 1, 9000 + near, 4),
+                                         passing(made, 2, 9000 + far, 4), passing(made, 3, 9000 - 2 * far, 5)};
   judged[3].passes = false;
   const Choice choice = choose(made.context, judged, all);
   ASSERT_TRUE(choice.leader);
@@ -142,12 +147,13 @@ TEST(Choose, NothingLeadsWhereNothingPasses) {
 TEST(Choose, AFormOfAnEffectHasTheNameOnlyWhereTheDataDistinguishIt) {
   const Made made;
   const std::vector<Candidate> all = candidates_of({"rate-state:healing", "rate-state"});
-  for (const double lead : {0.5, 2.0}) {
-    std::vector<CandidateResult> judged = {passing(made, 0, 9000 - lead * apart(made), 5), passing(made, 1, 9000, 5)};
+  for (const bool is_clear : {false, true}) {
+    const double lead = is_clear ? beyond_doubt(made) : within_chance(made);
+    std::vector<CandidateResult> judged = {passing(made, 0, 9000 - lead, 5), passing(made, 1, 9000, 5)};
     const Choice choice = choose(made.context, judged, all);
     ASSERT_TRUE(choice.leader);
-    EXPECT_EQ(*choice.leader, lead < 1 ? 1u : 0u) << lead;
-    EXPECT_THAT(choice.group, IsEmpty()) << lead;
+    EXPECT_EQ(*choice.leader, is_clear ? 0u : 1u);
+    EXPECT_THAT(choice.group, IsEmpty()) << is_clear;
   }
 }
 
@@ -155,13 +161,13 @@ TEST(Choose, WhatADeclaredInstrumentLeavesRoomForNeedsNoOtherName) {
   const Made made;
   std::vector<Candidate> all = candidates_of({"frictional-lag", "channel-delay"});
   all[1].allowed = AllowedRange{-1e-3, 1e-3, false};  // a bound is no reason for a name
-  std::vector<CandidateResult> judged = {passing(made, 0, 9000, 4), passing(made, 1, 9000 + 0.5 * apart(made), 4)};
+  std::vector<CandidateResult> judged = {passing(made, 0, 9000, 4), passing(made, 1, 9000 + within_chance(made), 4)};
   EXPECT_EQ(choose(made.context, judged, all).leader, 0u);
   all[1].allowed->is_uncertainty = true;
   Choice choice = choose(made.context, judged, all);
   EXPECT_EQ(choice.leader, 1u);
   EXPECT_THAT(choice.group, IsEmpty());
-  judged[1] = passing(made, 1, 9000 + 2 * apart(made), 4);
+  judged[1] = passing(made, 1, 9000 + beyond_doubt(made), 4);
   choice = choose(made.context, judged, all);
   EXPECT_EQ(choice.leader, 0u) << "it does not explain as much";
 }
