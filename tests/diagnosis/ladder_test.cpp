@@ -48,7 +48,6 @@ struct Made {
         context(std::span(&record, 1), fine, coarse, kNoise, 0.002) {}
   Made(const Made&) = delete;
   Made& operator=(const Made&) = delete;
-
   static Channels channels() {
     Channels needs;
     needs.acceleration = needs.distance = needs.stick_time = needs.lead = true;
@@ -67,6 +66,11 @@ struct Made {
 
   /// Squares that one row of noise leaves.
   double unit() const { return kNoise * kNoise; }
+  /// Differences in that unit that decide nothing, and that leave no doubt: chance makes them d^2 -+ 2 d, 4 is one
+  /// standard deviation from none, 200 seven; of the squares of the noise a thousandth shows on no plot, a hundredth
+  /// does.
+  double within_chance() const { return std::min(4.0, 1e-3 * context.fine.samples); }
+  double beyond_doubt() const { return std::max(200.0, 1e-2 * context.fine.samples); }
 
   LadderStep base() const {
     LadderStep step;
@@ -113,20 +117,10 @@ CandidateResult passing(const Made& made, std::size_t candidate, double units, s
   return out;
 }
 
-/// Differences in units of noise that decide nothing and that leave no doubt. With the right one of two models known
-/// the difference is d^2 -+ 2 d: 4 is one standard deviation from none, 200 is seven. Beside that a difference counts
-/// from some part of the squares of the noise: a thousandth shows on no plot, a hundredth does.
-double within_chance(const Made& made) {
-  return std::min(4.0, 1e-3 * made.context.fine.samples);
-}
-double beyond_doubt(const Made& made) {
-  return std::max(200.0, 1e-2 * made.context.fine.samples);
-}
-
 TEST(Choose, TheSimplestOfThoseThatDoAsWellLeadsAndTheOthersAreItsGroup) {
   const Made made;
   const std::vector<Candidate> all = candidates_of({"ringing", "viscous", "drift", "heating"});
-  const double near = within_chance(made), far = beyond_doubt(made);
+  const double near = made.within_chance(), far = made.beyond_doubt();
   std::vector<CandidateResult> judged = {passing(made, 0, 9000, 7), passing(made, 1, 9000 + near, 4),
                                          passing(made, 2, 9000 + far, 4), passing(made, 3, 9000 - 2 * far, 5)};
   judged[3].passes = false;
@@ -148,7 +142,7 @@ TEST(Choose, AFormOfAnEffectHasTheNameOnlyWhereTheDataDistinguishIt) {
   const Made made;
   const std::vector<Candidate> all = candidates_of({"rate-state:healing", "rate-state"});
   for (const bool is_clear : {false, true}) {
-    const double lead = is_clear ? beyond_doubt(made) : within_chance(made);
+    const double lead = is_clear ? made.beyond_doubt() : made.within_chance();
     std::vector<CandidateResult> judged = {passing(made, 0, 9000 - lead, 5), passing(made, 1, 9000, 5)};
     const Choice choice = choose(made.context, judged, all);
     ASSERT_TRUE(choice.leader);
@@ -161,13 +155,13 @@ TEST(Choose, WhatADeclaredInstrumentLeavesRoomForNeedsNoOtherName) {
   const Made made;
   std::vector<Candidate> all = candidates_of({"frictional-lag", "channel-delay"});
   all[1].allowed = AllowedRange{-1e-3, 1e-3, false};  // a bound is no reason for a name
-  std::vector<CandidateResult> judged = {passing(made, 0, 9000, 4), passing(made, 1, 9000 + within_chance(made), 4)};
+  std::vector<CandidateResult> judged = {passing(made, 0, 9000, 4), passing(made, 1, 9000 + made.within_chance(), 4)};
   EXPECT_EQ(choose(made.context, judged, all).leader, 0u);
   all[1].allowed->is_uncertainty = true;
   Choice choice = choose(made.context, judged, all);
   EXPECT_EQ(choice.leader, 1u);
   EXPECT_THAT(choice.group, IsEmpty());
-  judged[1] = passing(made, 1, 9000 + beyond_doubt(made), 4);
+  judged[1] = passing(made, 1, 9000 + made.beyond_doubt(), 4);
   choice = choose(made.context, judged, all);
   EXPECT_EQ(choice.leader, 0u) << "it does not explain as much";
 }
