@@ -3,17 +3,243 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
+#include <vector>
 
 #include "fit_steps.hpp"
 #include "limits.hpp"
-#include "rate_state_noise.hpp"
+#include "rate_state_steps.hpp"
+#include "statistics/linear_algebra.hpp"
+#include "statistics/wandering_noise.hpp"
 #include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit::fit {
 
 namespace {
+
+/// Covariance of values that are weighted sums of the noise, with the freedom of each variance: few independent values
+/// of what wanders lie in a record.
+struct Errors {
+  Eigen::MatrixXd covariance;
+  std::vector<double> freedom;
+};
+
+/// Root of the mean square of what is left behind the steps over that elsewhere, and the chance that noise makes it so
+/// large.
+struct Excess {
+  double factor = 1, p_value = 1;
+};
+
+/// What a solution leaves of the steps of a problem, its noise, and what that noise does to the values fitted.
+class FitErrors {
+ public:
+  FitErrors(const RateStateProblem& problem, const std::vector<double>& p)
+      : problem_(problem), data_(problem.data()), rows_(static_cast<Eigen::Index>(problem.count())) {
+    residual_.resize(rows_);
+    valid_ = problem.evaluate(p.data(), residual_.data(), nullptr) &&
+             problem.response(p.data(), friction_, &derivatives_) && add_times(p);
+    if (valid_) {
+      weighted_ = derivatives_;
+      problem.weigh(weighted_);
+      valid_ = weighted_.allFinite();
+    }
+    root_count_.resize(rows_);
+    for (Eigen::Index i = 0; i < rows_; ++i) {
+      const std::size_t value = problem.value_of(static_cast<std::size_t>(i));
+      times_.push_back(data_.time[value]);
+      counts_.push_back(data_.count[value]);
+      root_count_(i) = std::sqrt(data_.count[value]);
+    }
+    for (std::size_t k = 0; k < problem.steps().size(); ++k) begins_.push_back(problem.row_of(k));
+  }
+
+  bool valid() const { return valid_; }
+  const NoisySeries series() const { return {times_, counts_, begins_}; }
+  /// Of the samples, those that a value stands for included.
+  double sum_of_squares() const {
+    double sum = residual_.squaredNorm();
+    for (Eigen::Index i = 0; i < rows_; ++i) sum += data_.scatter[problem_.value_of(static_cast<std::size_t>(i))];
+    return sum;
+  }
+  /// Columns of the times that were fitted, behind those of the unknowns, and what turns at each.
+  const std::vector<Eigen::Index>& times() const { return time_columns_; }
+  const std::vector<Turn>& turns() const { return turns_; }
+  double count() const { return std::accumulate(counts_.begin(), counts_.end(), 0.0); }
+
+  /// Noise of what is left; the free unknowns, and the times, are those whose columns are kept.
+  WanderingNoise noise(const std::vector<Eigen::Index>& free) const {
+    return noise_of_rows(free, [](std::size_t) { return true; });
+  }
+
+  /// Minus twice the logarithm of the likelihood of what is left, with that noise.
+  double whitened(const WanderingNoise& noise) const {
+    return whitened_squares(series(), residual_.cwiseQuotient(root_count_), own_columns(), noise);
+  }
+
+  /// The same of friction that does not answer the steps: all of it is left.
+  double whitened_without_answer(const WanderingNoise& noise) const {
+    RowMatrix all(rows_, 1);
+    for (Eigen::Index i = 0; i < rows_; ++i) all(i, 0) = data_.friction[problem_.value_of(static_cast<std::size_t>(i))];
+    problem_.weigh(all);
+    return whitened_squares(series(), all.col(0).cwiseQuotient(root_count_), own_columns(), noise);
+  }
+
+  /// Rows by which the noise moves the free unknowns.
+  Eigen::MatrixXd influence(const std::vector<Eigen::Index>& free) const {
+    Eigen::MatrixXd kept = weighted_(Eigen::all, free);
+    const Eigen::VectorXd scale = kept.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+    kept *= scale.asDiagonal();
+    const Eigen::MatrixXd inverse = inverse_triangular_factor(kept);
+    Eigen::MatrixXd out = kept * (inverse * inverse.transpose()) * scale.asDiagonal();
+    for (Eigen::Index i = 0; i < rows_; ++i) out.row(i) *= root_count_(i);
+    return out;
+  }
+
+  /// Constant and slope of the k-th step, and the rows by which the noise moves them.
+  Eigen::VectorXd own_values(std::size_t k, const std::vector<Eigen::Index>& free, const Eigen::MatrixXd& influence,
+                             Eigen::MatrixXd& rows) const {
+    const auto begin = static_cast<Eigen::Index>(begins_[k]);
+    Eigen::MatrixXd design = problem_.design_of(k);
+    const Eigen::Index n = design.rows(), q = design.cols();
+    const Eigen::VectorXd weights = root_count_.segment(begin, n);
+    Eigen::VectorXd right(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const std::size_t value = problem_.value_of(static_cast<std::size_t>(begin + i));
+      right(i) = weights(i) * (data_.friction[value] - friction_(begin + i));
+    }
+    const Eigen::MatrixXd by_free = weights.asDiagonal() * derivatives_.middleRows(begin, n)(Eigen::all, free);
+    design = weights.asDiagonal() * design;
+    const Eigen::VectorXd scale = design.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+    design *= scale.asDiagonal();
+    const Eigen::MatrixXd inverse = inverse_triangular_factor(design);
+    const Eigen::MatrixXd normal = scale.asDiagonal() * (inverse * inverse.transpose());
+    rows = -influence * (normal * (design.transpose() * by_free)).transpose();
+    for (Eigen::Index i = 0; i < n; ++i) rows.row(begin + i) += weights(i) * (design.row(i) * normal.transpose());
+    rows.conservativeResize(Eigen::NoChange, q);
+    return normal * (design.transpose() * right);
+  }
+
+  /// What is left while a contact adapts to a step or a hold, over what is left elsewhere. Noise knows nothing of the
+  /// steps, so that a law that describes them leaves as much behind them as elsewhere, however the noise wanders. That
+  /// noise is the one elsewhere: what a law that fails leaves behind the steps wanders too. distance: of the load
+  /// point, over which the contact adapts. Nothing where there are too few independent values on either side.
+  std::optional<Excess> excess_behind_steps(double distance, const std::vector<Eigen::Index>& free) const {
+    std::vector<bool> adapts(times_.size());
+    for (std::size_t k = 0; k < begins_.size(); ++k) {
+      const VelocityStep& step = data_.steps[problem_.steps()[k]];
+      for (std::size_t i = begins_[k]; i < end_of(k); ++i) {
+        const double moved = data_.displacement[problem_.value_of(i)] - step.displacement;
+        adapts[i] = times_[i] > step.time && moved < distance;  // through a hold the load point does not move
+      }
+    }
+    const WanderingNoise noise = noise_of_rows(free, [&](std::size_t i) { return !adapts[i]; });
+    if (!(noise.white > 0)) return std::nullopt;
+    double squares[2] = {0, 0}, values[2] = {0, 0}, independent[2] = {0, 0};
+    for (std::size_t k = 0; k < begins_.size(); ++k) {
+      for (std::size_t i = begins_[k]; i < end_of(k); ++i) {
+        const double lasts = i + 1 < end_of(k) ? times_[i + 1] - times_[i] : times_[i] - times_[i - 1];
+        const double left = residual_(static_cast<Eigen::Index>(i)) / root_count_(static_cast<Eigen::Index>(i));
+        const std::size_t where = adapts[i] ? 0 : 1;
+        squares[where] += left * left / variance_of_mean(lasts, counts_[i], noise);
+        values[where] += 1;
+        independent[where] += noise.time > 0 ? std::min(1.0, lasts / (2 * noise.time)) : 1;
+      }
+    }
+    independent[1] -= static_cast<double>(begins_.size() * static_cast<std::size_t>(problem_.design_of(0).cols()));
+    if (independent[0] < kFewestFreeVariances || independent[1] < kFewestFreeVariances) return std::nullopt;
+    const double ratio = squares[0] / values[0] / (squares[1] / values[1]);
+    if (!(ratio > 0) || !std::isfinite(ratio)) return std::nullopt;
+    return Excess{std::sqrt(ratio), f_p_value(ratio, independent[0], independent[1])};
+  }
+
+  Errors errors_of(const Eigen::MatrixXd& rows, const WanderingNoise& noise) const {
+    const NoiseMoments moments = noise_moments(series(), rows, noise);
+    Errors out{moments.white + moments.slow, {}};
+    double independent = 0;
+    for (std::size_t k = 0; k < begins_.size() && noise.time > 0; ++k) {
+      independent += (times_[end_of(k) - 1] - times_[begins_[k]]) / (2 * noise.time);
+    }
+    const double of_slow = std::max(2.0, independent), of_white = std::max(2.0, count());
+    for (Eigen::Index i = 0; i < rows.cols(); ++i) {
+      const double all = out.covariance(i, i), slow = all > 0 ? moments.slow(i, i) / all : 0;
+      out.freedom.push_back(1 / (slow * slow / of_slow + (1 - slow) * (1 - slow) / of_white));
+    }
+    return out;
+  }
+
+ private:
+  /// Columns of the times of steps that were fitted; false where sliding runs away.
+  bool add_times(const std::vector<double>& p) {
+    for (const Turn& turn : free_turns(data_)) {
+      if (std::find(problem_.steps().begin(), problem_.steps().end(), turn.step) == problem_.steps().end()) continue;
+      const Eigen::VectorXd column = response_by_time(problem_, p, turn);
+      if (column.size() == 0) return false;
+      if (!(column.squaredNorm() > 0)) continue;  // nothing tells of it
+      turns_.push_back(turn);
+      time_columns_.push_back(derivatives_.cols());
+      derivatives_.conservativeResize(Eigen::NoChange, derivatives_.cols() + 1);
+      derivatives_.rightCols(1) = column;
+    }
+    return true;
+  }
+
+  std::size_t end_of(std::size_t k) const { return k + 1 < begins_.size() ? begins_[k + 1] : times_.size(); }
+
+  /// Noise of what is left at some of the values.
+  template <class IsSelected>
+  WanderingNoise noise_of_rows(const std::vector<Eigen::Index>& free, const IsSelected& is_selected) const {
+    std::vector<Eigen::Index> rows;
+    std::vector<double> times, counts;
+    std::vector<std::size_t> begins;
+    for (std::size_t k = 0; k < begins_.size(); ++k) {
+      begins.push_back(rows.size());
+      for (std::size_t i = begins_[k]; i < end_of(k); ++i) {
+        if (!is_selected(i)) continue;
+        rows.push_back(static_cast<Eigen::Index>(i));
+        times.push_back(times_[i]);
+        counts.push_back(counts_[i]);
+      }
+    }
+    const Eigen::VectorXd left = residual_(rows).cwiseQuotient(root_count_(rows));
+    Eigen::MatrixXd jacobian = root_count_(rows).cwiseInverse().asDiagonal() * weighted_(rows, free);
+    const Eigen::VectorXd scale = jacobian.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+    jacobian *= scale.asDiagonal();
+    return estimate_noise({times, counts, begins}, left, jacobian, own_columns()(rows, Eigen::all));
+  }
+
+  /// Of the mean of `count` samples over a time that lasts.
+  static double variance_of_mean(double lasts, double count, const WanderingNoise& noise) {
+    const double white = noise.white * noise.white / count;
+    if (!(noise.time > 0)) return white;
+    const double times = count > 1 ? lasts / noise.time : 0;  // a sample is no mean
+    const double kept = times > 1e-3 ? 2 / times * (1 - (1 - std::exp(-times)) / times) : 1;
+    return white + noise.slow * noise.slow * kept;
+  }
+
+  /// Constant and slope of each step, one below the other.
+  Eigen::MatrixXd own_columns() const {
+    Eigen::MatrixXd own(rows_, problem_.design_of(0).cols());
+    for (std::size_t k = 0; k < begins_.size(); ++k) {
+      Eigen::MatrixXd design = problem_.design_of(k);
+      for (Eigen::Index c = 0; c < design.cols(); ++c) design.col(c) /= std::max(design.col(c).norm(), 1e-300);
+      own.middleRows(static_cast<Eigen::Index>(begins_[k]), design.rows()) = design;
+    }
+    return own;
+  }
+
+  const RateStateProblem& problem_;
+  const RateStateData& data_;
+  Eigen::Index rows_;
+  bool valid_ = false;
+  Eigen::VectorXd residual_, friction_, root_count_;
+  RowMatrix weighted_, derivatives_;
+  std::vector<double> times_, counts_;
+  std::vector<std::size_t> begins_;
+  std::vector<Eigen::Index> time_columns_;
+  std::vector<Turn> turns_;
+};
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
@@ -93,18 +319,6 @@ void set_own_values(const FitErrors& found, std::size_t steps, const std::vector
   }
 }
 
-/// Of the load point, over which the contact adapts to the steps: D_c of the slower state, and what the machine gives
-/// way while friction changes.
-double adapting_distance(const RateStateData& data, std::size_t states, const RateStateFit& fit) {
-  double distance = 0, change = 0;
-  for (std::size_t i = 0; i < states; ++i) distance = std::max(distance, fit.parameters[2 + 2 * i].value);
-  for (const VelocityStep& step : data.steps) {
-    const double ratio = step.hold > 0 ? kHoldAsRatio : std::abs(std::log(step.after / step.before));
-    change = std::max(change, fit.parameters[0].value * ratio);
-  }
-  return kAdapted * distance + change / fit.parameters.back().value;
-}
-
 /// Says where a law leaves more while the contact adapts than elsewhere; where that cannot be judged, that what is left
 /// wanders by much more than the noise of a sample.
 void say_excess(const FitErrors& found, double distance, const std::vector<Eigen::Index>& free, RateStateFit& fit) {
@@ -121,78 +335,6 @@ void say_excess(const FitErrors& found, double distance, const std::vector<Eigen
         fmt::format("what is left wanders by {} over {} s, far above the noise of a sample: the measurement "
                     "drifts, or this law does not describe the response",
                     general(fit.noise_slow, 2), general(fit.noise_time, 2)));
-  }
-}
-
-/// By how much a logarithm is off within its 95 % interval; not finite where that reaches where there is none.
-template <class F>
-double half_width(const F& logarithm, const std::vector<double>& p, double quantile,
-                  const Eigen::Map<const RowMatrix>& covariance) {
-  Eigen::VectorXd gradient(static_cast<Eigen::Index>(p.size()));
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    constexpr double kPart = 1e-5;
-    const double h = kPart * std::max(std::abs(p[i]), 1e-3);
-    std::vector<double> up = p, down = p;
-    up[i] += h, down[i] -= h;
-    gradient(static_cast<Eigen::Index>(i)) = (logarithm(up) - logarithm(down)) / (2 * h);
-  }
-  return quantile * std::sqrt(gradient.dot(covariance * gradient));
-}
-
-/// k_c, and k over it with the interval that errors of ln(k/k_c) make: where friction falls beyond doubt, and where
-/// that of two states rises and k_c is known to a factor.
-void set_critical_stiffness(const std::vector<double>& p, double quantile,
-                            const Eigen::Map<const RowMatrix>& covariance, RateStateFit& fit) {
-  const bool falls = fit.rate_dependence_upper95 < 0;
-  const bool rises = fit.rate_dependence_lower95 > 0;
-  if (!falls && !(rises && fit.states > 1)) return;
-  const auto critical = [&](const std::vector<double>& at) {
-    return std::log(critical_stiffness(parameters_from(at.data(), fit.states), fit.states));
-  };
-  const auto ratio = [&](const std::vector<double>& at) {
-    return std::log(parameters_from(at.data(), fit.states).stiffness) - critical(at);
-  };
-  const double half = half_width(ratio, p, quantile, covariance);
-  if (!std::isfinite(half) ||
-      (rises && !(2 * half_width(critical, p, quantile, covariance) < std::log(kWidestInterval))))
-    return;
-  fit.critical_stiffness = std::exp(critical(p));
-  fit.stiffness_ratio = std::exp(ratio(p));
-  fit.stiffness_ratio_lower95 = fit.stiffness_ratio * std::exp(-half);
-  fit.stiffness_ratio_upper95 = fit.stiffness_ratio * std::exp(half);
-}
-
-/// a - b, and whether sliding is stable on this machine, from the values and their covariance.
-void set_stability(const std::vector<double>& p, double freedom, RateStateFit& fit) {
-  const auto n = static_cast<Eigen::Index>(p.size());
-  const Eigen::Map<const RowMatrix> covariance(fit.covariance.data(), n, n);
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
-  gradient(0) = 1;
-  double value = p[0];
-  for (std::size_t i = 0; i < fit.states; ++i) {
-    gradient(static_cast<Eigen::Index>(1 + 2 * i)) = -1;
-    value -= p[1 + 2 * i];
-  }
-  for (std::size_t i = 0; i < 1 + fit.states; ++i) {
-    if (!fit.parameters[i == 0 ? 0 : 2 * i - 1].at_bound) continue;
-    fit.rate_dependence = {kUnknown, kUnknown, freedom};
-    fit.rate_dependence_lower95 = fit.rate_dependence_upper95 = kUnknown;
-    return;
-  }
-  const double quantile = t_quantile_95(freedom);
-  fit.rate_dependence = {value, std::sqrt(gradient.dot(covariance * gradient)), freedom};
-  fit.rate_dependence_lower95 = value - quantile * fit.rate_dependence.std_error;
-  fit.rate_dependence_upper95 = value + quantile * fit.rate_dependence.std_error;
-  set_critical_stiffness(p, quantile, covariance, fit);
-}
-
-void set_correlations(RateStateFit& fit) {
-  const std::size_t n = fit.parameters.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = i + 1; j < n; ++j) {
-      const double value = fit.covariance[i * n + j] / std::sqrt(fit.covariance[i * n + i] * fit.covariance[j * n + j]);
-      if (std::abs(value) > kStrongCorrelation) fit.correlations.push_back({i, j, value});
-    }
   }
 }
 
@@ -252,34 +394,6 @@ double log_likelihood_below(const RateStateProblem& best, const Solution& best_m
   if (!one.valid() || !two.valid() || !(fit.noise_white > 0)) return kUnknown;
   const WanderingNoise noise = {fit.noise_white, fit.noise_slow, fit.noise_time};
   return 0.5 * (two.whitened(noise) - one.whitened(noise));
-}
-
-void add_messages(RateStateFit& fit) {
-  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
-    const FitParameter& p = fit.parameters[k];
-    const std::string& name = p.parameter.name;
-    const double si = p.parameter.si;
-    if (p.at_bound) {
-      const bool upper = p.value / si > 0.5 * (p.parameter.lower + p.parameter.upper);
-      fit.messages.push_back(
-          name == "k" && upper
-              ? fmt::format("k is not resolved: the machine is stiffer than the samples behind the steps can show; "
-                            "sample faster there, or hold k by --bounds")
-              : fmt::format("{} ended at its {} bound, {} {}", name, upper ? "upper" : "lower",
-                            general(p.value / si, 4), p.parameter.unit));
-    } else if (!p.determined) {
-      fit.messages.push_back(
-          fmt::format("{} is not known from these data: its 95 % interval reaches from {} to "
-                      "{} {}",
-                      name, general(p.lower95 / si, 3), general(p.upper95 / si, 3), p.parameter.unit));
-    }
-  }
-  for (const Correlation& c : fit.correlations) {
-    fit.messages.push_back(fmt::format(
-        "{} and {} are correlated by {}: the data fix a combination of them better "
-        "than either",
-        fit.parameters[c.first].parameter.name, fit.parameters[c.second].parameter.name, fixed(c.value, 3)));
-  }
 }
 
 }  // namespace tribofit::fit

@@ -168,6 +168,14 @@ double p_value_of_no_answer(const RateStateProblem& problem, const Solution& min
 double log_likelihood_below(const RateStateProblem& best, const Solution& best_minimum, const RateStateProblem& other,
                             const Solution& other_minimum, const RateStateFit& fit);
 
+/// Of the load point, over which the contact adapts to the steps: D_c of the slower state, and what the machine gives
+/// way while friction changes.
+double adapting_distance(const RateStateData& data, std::size_t states, const RateStateFit& fit);
+
+/// a - b, and whether sliding is stable on this machine, from the values and their covariance.
+void set_stability(const std::vector<double>& p, double freedom, RateStateFit& fit);
+void set_correlations(RateStateFit& fit);
+
 /// What a person should know of it.
 void add_messages(RateStateFit& fit);
 
