@@ -24,7 +24,8 @@ using segmentation::kShortestSlip;
 inline constexpr std::size_t kShortestNoiseStretch = 12, kLongestNoiseStretch = 200;
 
 /// Degrees of freedom below which a variance of its own for each point says too little of a parameter: its interval
-/// would be a quarter wider than with one variance for all, which a standard error of each point serves better.
+/// would be a quarter wider than with one variance for all, which a standard error of each point serves better. And
+/// independent values on either side without which it cannot be judged whether a law lacks something.
 inline constexpr double kFewestFreeVariances = 5;
 
 /// A parabola over a stretch takes away what is slower than a third of it.
@@ -73,7 +74,7 @@ inline constexpr double kLoudest = 3;
 
 /// Values of a slip on which a search runs before all values take part: what means over more move is within reach of a
 /// few Gauss-Newton steps (up to 20 standard errors for a memory of a thirtieth of a slip). Fewer: a start may be led
-/// into another valley.
+/// into another valley. A look takes half of them.
 inline constexpr double kValuesOfSearch = 100;
 /// Iterations behind which a look compares its starts. Fewer: a start that is slow at first is lost; more: time. With
 /// these, 147 sets of effects on each of three simulated records were described as well as with twelve, to 3 %.
@@ -182,24 +183,25 @@ inline constexpr std::size_t kMostLookedAt = 8192;
 
 // ---- velocity steps and holds
 
-/// Part of the sliding at one speed that shows the level before the next step, and that belongs to the step before; of
-/// the sliding before the first step as much as is slid behind it, or lasts this part of its time: run-in is no level.
-/// Larger: steps whose decay is long lose their end; smaller: the level before a step is less well known.
+/// Part of the sliding at one speed that belongs to the step before it; the rest shows the level before the next step.
+/// Of the sliding before the first step as much as is slid behind it, or lasts as long as such a rest: run-in is no
+/// level. Larger: steps whose decay is long lose their end; smaller: the level before a step is less well known.
 inline constexpr double kPartOfSlidingBehind = 0.7;
 /// Mean square that a fit of all steps leaves, over that of the first step alone, from which on it has not found its
 /// minimum: near the critical stiffness friction swings, and few starts lead there.
 inline constexpr double kFarFromMinimum = 4;
 /// Logarithm of the ratio of speeds between which there is no step: a drive that still settles.
 inline constexpr double kNoStep = 0.05;
-/// Samples of a step, without which it shows nothing: a constant, a line and four parameters are asked of it.
+/// Samples behind a step, and half as many before it, without which it shows nothing: a constant, a line and four
+/// parameters are asked of it.
 inline constexpr std::size_t kFewestBehindStep = 10;
 /// Values that a step is fitted to: neighbours are put together where there are more, which moves the parameters by
 /// less than 1 % of their errors; and that the search begins with.
 inline constexpr std::size_t kValuesOfStep = 1500, kValuesOfStepSearch = 150;
 /// D_c behind a step within which a contact adapts: e^-5 of the change is left. What is left there over what is left
-/// elsewhere, as a root of mean squares, from which on a law lacks something, the chance that noise makes it so (none
-/// of 60 simulated records with wandering noise was said to lack anything), and independent values without which it
-/// cannot be judged. Smaller: drift of the measurement is blamed on the law; larger: a law that fails a little passes.
+/// elsewhere, as a root of mean squares, from which on a law lacks something (with kChanceOfRemark that noise makes it
+/// so none of 60 simulated records with wandering noise was said to lack anything). Smaller: drift of the measurement
+/// is blamed on the law; larger: a law that fails a little passes.
 inline constexpr double kAdapted = 5, kMuchLeft = 1.15;
 /// What wanders over the noise of a sample from which on it is said where that cannot be judged.
 inline constexpr double kMuchWander = 4;
@@ -213,8 +215,8 @@ inline constexpr double kSecondDistance = 8;
 /// the sampling interval where it was read from a recorded speed.
 inline constexpr double kSlackOfStated = 0.1;
 /// The same, over the sliding, where a recorded displacement turns: drives run up, catch up and have play, so that
-/// friction answered up to 0.004 of the sliding later on real records; and the chance from which on it is moved.
-/// Smaller: a later answer is taken for a softer machine; larger: what else friction does beside a step is taken for a
+/// friction answered up to 0.004 of the sliding later on real records. It is moved beyond kChanceOfRemark. Smaller: a
+/// later answer is taken for a softer machine; larger: what else friction does beside a step is taken for a
 /// later one.
 inline constexpr double kSlackOfDisplacement = 0.05;
 /// Chance that noise makes two states describe the steps so much better, below which they do, and error of a, and of b
