@@ -12,10 +12,8 @@
 #include <system_error>
 #include <utility>
 
-#include "analysis_options.hpp"
 #include "console.hpp"
 #include "memory.hpp"
-#include "options.hpp"
 #include "results.hpp"
 #include "summary.hpp"
 #include "tribofit/campaign/batch.hpp"
@@ -83,10 +81,10 @@ void check_usage(const Settings& s, const Campaign& campaign, const BatchOptions
   if (!s.report.empty() && !s.shard.empty()) throw UsageError("--report needs `identify merge`");
   if (!s.json.empty()) throw UsageError("--json needs one trace at a time; --out has a file for each");
   if (!s.csv.empty()) throw UsageError("--csv needs one trace at a time");
-  if (campaign.runs.size() > 1 && !s.second_file.empty()) {
+  if (campaign.runs.size() > 1 && !s.identify.read.second_file.empty()) {
     throw UsageError("--with needs one trace at a time");
   }
-  if (campaign.runs.size() > 1 && !s.continued_in.empty()) {
+  if (campaign.runs.size() > 1 && !s.identify.read.continued_in.empty()) {
     throw UsageError("--continue needs one trace at a time");
   }
   if (!s.figures.empty() && !s.shard.empty()) throw UsageError("--figures needs `identify merge`");
@@ -242,7 +240,7 @@ ExitStatus run_as_batch(const Settings& s, Campaign campaign, const IdentifyOpti
   batch.results = s.out.empty() ? default_results(campaign.folder) : s.out;
   batch.shard = shard_from(s.shard);
   batch.again = s.again;
-  batch.threads = s.threads;
+  batch.threads = options.threads;
   check_usage(s, campaign, batch);
   sharing_from(s);  // refused before anything is fitted
   give_memory_back();

@@ -16,6 +16,7 @@
 #include "tribofit/ingest/conditions.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/version.hpp"
 #include "verbs.hpp"
 
@@ -62,7 +63,7 @@ std::string value_of(const Json& parameter) {
                                                                   parameter.at("name").get<std::string>();
   const double value = parameter.at("value").get<double>();
   const std::string unit = parameter.at("unit") == "1" ? "" : " " + parameter.at("unit").get<std::string>();
-  if (!parameter.at("std_error").is_number()) return fmt::format("{} = {:.6g}{} (held)", name, value, unit);
+  if (!parameter.at("std_error").is_number()) return fmt::format("{} = {}{} (held)", name, general(value), unit);
   const double error = parameter.at("std_error").get<double>();
   const int places = error > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12) : 6;
   std::string text = fmt::format("{} = ({:.{}f} +/- {:.{}f}){}", name, value, places, error, places, unit);
@@ -80,7 +81,7 @@ std::string conditions_of(const Json& result) {
   for (const ConditionInfo& info : condition_infos) {
     const auto at = conditions.find(info.column);
     if (at == conditions.end() || !at->is_number()) continue;
-    text += fmt::format("{}{:.4g} {}", text.empty() ? "" : ", ", at->get<double>(), info.unit);
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", general(at->get<double>(), 4), info.unit);
   }
   return text.empty() ? "" : " (" + text + ")";
 }
@@ -107,8 +108,8 @@ std::string paragraph_of(const Json& result, std::vector<std::string>& names) {
   text += values + " (value +/- standard error [95 % interval]).";
   const Json& error = fit.at("error").at("held_out_rmse");
   if (error.is_number() && fit.at("floor_rmse").is_number()) {
-    text += fmt::format(" The error on what was held out of the fit is {:.3g} (RMSE), the noise floor {:.3g}.",
-                        error.get<double>(), fit.at("floor_rmse").get<double>());
+    text += fmt::format(" The error on what was held out of the fit is {} (RMSE), the noise floor {}.",
+                        general(error.get<double>(), 3), general(fit.at("floor_rmse").get<double>(), 3));
   }
   if (fit.at("conditional").get<bool>())
     text += " The law does not hold to the noise floor: errors and intervals are conditional on it.";
@@ -161,7 +162,7 @@ void add_cite(const Command& app) {
       "  identify cite exponential runout\n"
       "  identify diagnose --radius 15mm --json found.json trace.csv && identify cite found.json");
   const auto what = std::make_shared<std::vector<std::string>>();
-  verb.add_option("WHAT", *what, "Laws, effects, results (.json)");
+  verb.add_names("WHAT", *what, "Laws, effects, results (.json)");
   verb.on_run([what] {
     std::string text;
     for (const std::string& line : split(citation(*what), '\n'))

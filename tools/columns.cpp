@@ -11,6 +11,7 @@
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/list_columns.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/report/terminal.hpp"
 #include "verbs.hpp"
 
@@ -33,8 +34,8 @@ Row row_of(const ListedColumn& column) {
   return {column.request.front() == '#' && column.request != column.name ? column.request + " " + name : name,
           column.unit,
           column.is_text && column.count == 0 ? "text" : fmt::format("{}", column.count),
-          has_numbers ? fmt::format("{:.6g}", column.lowest) : "",
-          has_numbers ? fmt::format("{:.6g}", column.highest) : "",
+          has_numbers ? general(column.lowest) : "",
+          has_numbers ? general(column.highest) : "",
           column.channel + (column.is_likely ? "?" : "")};
 }
 
@@ -75,7 +76,8 @@ std::string table_and_facts(const ColumnListing& listing, const std::string& pat
   if (likely) text += "  ?: what the name or the unit suggests; it is taken where --columns names it\n";
   std::vector<double> intervals = listing.intervals;
   intervals.erase(std::unique(intervals.begin(), intervals.end()), intervals.end());
-  for (const double interval : intervals) text += fmt::format("  time: every {:g} s, as the file states\n", interval);
+  for (const double interval : intervals)
+    text += fmt::format("  time: every {} s, as the file states\n", general(interval));
   constexpr std::size_t kMostFacts = 20;
   for (std::size_t i = 0; i < listing.facts.size() && i < kMostFacts; ++i) {
     text += printable(fmt::format("  {}: {}", listing.facts[i].first, listing.facts[i].second.substr(0, 60))) + "\n";
@@ -127,7 +129,6 @@ void add_columns(const Command& app) {
   verb.footer(kColumnsFooter);
   verb.add_option("FILE", *file, "File of a trace").required();
   verb.on_run([file, verb] {
-    verb.refuse_empty_values();
     const TriedColumns tried = try_columns(*file);
     print(table_and_facts(tried.listing, *file) + next_step(tried, *file));
     return ExitStatus::done;

@@ -11,6 +11,7 @@
 #include "console.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "typed_values.hpp"
 
 namespace {
 
@@ -95,8 +96,7 @@ std::string folded_example(const std::string& line, std::size_t width) {
 class FoldedHelp : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
-    constexpr std::size_t kNarrowest = 80, kWidest = 120;
-    const std::size_t width = std::clamp(terminal_width(), kNarrowest, kWidest);
+    const std::size_t width = prose_width();
     std::string out, sentence;  // lines of prose are put together again
     const auto flush = [&] {
       if (!sentence.empty()) out += folded(sentence) + "\n";
@@ -137,19 +137,7 @@ ExitStatus wrong_usage(const CLI::App& app, const std::string& text) {
   return ExitStatus::wrong_usage;
 }
 
-/// A CLI11 check that says nothing but the words or numbers in the help and in the error.
-template <class Check>
-Option checked(CLI::Option* option, Check check) {
-  option->check(std::move(check));
-  return Option(option);
-}
-
 }  // namespace
-
-Option Option::group(const char* name) const {
-  parsed_->group(name);
-  return *this;
-}
 
 Option Option::required() const {
   parsed_->required();
@@ -166,22 +154,23 @@ Option Option::show_default() const {
   return *this;
 }
 
-Option Option::one_value_each() const {
-  parsed_->allow_extra_args(false);
+Option Option::one_of(const std::vector<std::string>& words) const {
+  parsed_->check(CLI::IsMember(words));
   return *this;
 }
 
-Option Option::one_of(const std::vector<std::string>& words) const {
-  return checked(parsed_, CLI::IsMember(words));
-}
-
 Option Option::range(double least, double most) const {
-  return checked(parsed_, CLI::Range(least, most));
+  parsed_->check(CLI::Range(least, most));
+  return *this;
 }
 
 Option Option::range(int least, int most) const {
-  return checked(parsed_, CLI::Range(least, most));
+  parsed_->check(CLI::Range(least, most));
+  return *this;
 }
+
+Command::Command(CLI::App& app, ExitStatus& status)
+    : app_(&app), status_(&status), readers_(std::make_shared<std::vector<std::function<void()>>>()) {}
 
 std::string Command::likely_verb(const std::string& word) const {
   std::vector<std::string> known;
@@ -192,6 +181,12 @@ std::string Command::likely_verb(const std::string& word) const {
 
 Command Command::add_verb(const char* name, const char* help) const {
   return {*app_->add_subcommand(name, help), *status_};
+}
+
+Command Command::in(const char* section) const {
+  Command out = *this;
+  out.section_ = section;
+  return out;
 }
 
 void Command::footer(const char* text) const {
@@ -209,38 +204,81 @@ void Command::requires_kind(const char* advice) const {
   });
 }
 
+Option Command::added(CLI::Option* option) const {
+  if (section_ != nullptr) option->group(section_);
+  return Option(option);
+}
+
 Option Command::add_option(const std::string& names, std::string& value, const std::string& help) const {
-  return Option(app_->add_option(names, value, help));
+  return added(app_->add_option(names, value, help));
 }
 
 Option Command::add_option(const std::string& names, std::vector<std::string>& values, const std::string& help) const {
-  return Option(app_->add_option(names, values, help));
+  return added(app_->add_option(names, values, help)->allow_extra_args(false));
+}
+
+Option Command::add_names(const std::string& name, std::vector<std::string>& values, const std::string& help) const {
+  return added(app_->add_option(name, values, help));
 }
 
 Option Command::add_option(const std::string& names, int& value, const std::string& help) const {
-  return Option(app_->add_option(names, value, help));
+  return added(app_->add_option(names, value, help));
 }
 
 Option Command::add_option(const std::string& names, std::size_t& value, const std::string& help) const {
-  return Option(app_->add_option(names, value, help));
+  return added(app_->add_option(names, value, help));
 }
 
 Option Command::add_option(const std::string& names, double& value, const std::string& help) const {
-  return Option(app_->add_option(names, value, help));
+  return added(app_->add_option(names, value, help));
 }
 
 Option Command::add_flag(const std::string& names, bool& value, const std::string& help) const {
-  return Option(app_->add_flag(names, value, help));
+  return added(app_->add_flag(names, value, help));
 }
 
 Option Command::option(const char* name) const {
   return Option(app_->get_option(name));
 }
 
-void Command::on_run(std::function<ExitStatus()> run) const {
-  app_->callback([app = app_, status = status_, run = std::move(run)] {
-    if (app->get_subcommands().empty()) *status = run();
+Option Command::add_read(const std::string& names, Read read, const std::string& help) const {
+  const auto text = std::make_shared<std::string>();
+  readers_->push_back([text, read = std::move(read)] {
+    if (!text->empty()) read(*text);
   });
+  return add_option(names, *text, help);
+}
+
+Option Command::add_each(const std::string& names, Read read, const std::string& help) const {
+  const auto texts = std::make_shared<std::vector<std::string>>();
+  readers_->push_back([texts, read = std::move(read)] { std::for_each(texts->begin(), texts->end(), read); });
+  return add_option(names, *texts, help);
+}
+
+Option Command::add_quantity(const std::string& name, tribofit::Quantity quantity, std::function<void(double)> take,
+                             const std::string& help) const {
+  const auto read = [name, quantity, take = std::move(take)](const std::string& text) {
+    take(positive_value(text, quantity, name));
+  };
+  return add_read(name, read, help);
+}
+
+void Command::on_run(std::function<ExitStatus()> run) const {
+  app_->callback([own = *this, run = std::move(run)] {
+    if (!own.app_->get_subcommands().empty()) return;
+    own.read_options();
+    *own.status_ = run();
+  });
+}
+
+void Command::read_options() const {
+  for (const Typed& option : typed()) {
+    const auto& values = option.values;
+    if (option.is_flag || std::find(values.begin(), values.end(), "") == values.end()) continue;
+    const std::string name = option.is_positional ? "a trace" : option.name;
+    throw UsageError(name + " is given an empty value; give one or leave it out");
+  }
+  for (const auto& read : *readers_) read();
 }
 
 void Command::before_verb(std::function<void(const std::string&)> check) const {
@@ -260,23 +298,10 @@ std::vector<Command::Typed> Command::typed() const {
   return out;
 }
 
-bool Command::has_option(const char* name) const {
-  return app_->get_option_no_throw(name) != nullptr;
-}
-
 std::vector<Command::Typable> Command::typables() const {
   std::vector<Typable> out;
   add_typables(*app_, {}, out);
   return out;
-}
-
-void Command::refuse_empty_values() const {
-  for (const Typed& option : typed()) {
-    const auto& values = option.values;
-    if (option.is_flag || std::find(values.begin(), values.end(), "") == values.end()) continue;
-    const std::string name = option.is_positional ? "a trace" : option.name;
-    throw UsageError(name + " is given an empty value; give one or leave it out");
-  }
 }
 
 std::vector<std::string> Command::own_options(const std::function<bool(const Typed&)>& wanted) const {
@@ -320,10 +345,12 @@ ExitStatus run_program(const Program& program, int argc, char** argv,
 void parse_words(std::vector<std::string> words, const std::function<void(const Command&)>& setup) {
   CLI::App app;
   ExitStatus ignored = ExitStatus::done;
-  setup(Command(app, ignored));
+  const Command command(app, ignored);
+  setup(command);
   std::reverse(words.begin(), words.end());  // as CLI11 takes them
   try {
     app.parse(words);
+    command.read_options();
   } catch (const CLI::ParseError& error) {
     throw UsageError(error.what());
   }

@@ -3,10 +3,13 @@
 #include <cstddef>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exit_status.hpp"
+#include "tribofit/ingest/units.hpp"
 
 namespace CLI {
 class App;
@@ -18,7 +21,7 @@ class Option;
 namespace section {
 inline constexpr const char *kConditions = "Conditions", *kReading = "Reading", *kOutput = "Output", *kBatch = "Batch",
                             *kTogether = "Runs together", *kMeans = "What can be done", *kServer = "Server",
-                            *kStudy = "Study";
+                            *kStudy = "Study", *kFit = "Law and fit";
 }
 
 /// One option of a command. It is filled in when the command line is parsed.
@@ -26,13 +29,10 @@ class Option {
  public:
   explicit Option(CLI::Option* parsed) : parsed_(parsed) {}
 
-  Option group(const char* name) const;
   Option required() const;
   Option describe(const char* help) const;
   /// The help states the value it has unless typed.
   Option show_default() const;
-  /// One value each time it is given; it may be given several times.
-  Option one_value_each() const;
   Option one_of(const std::vector<std::string>& words) const;
   Option range(double least, double most) const;
   Option range(int least, int most) const;
@@ -46,9 +46,11 @@ class Option {
 /// The one place that knows the parser (CLI11): command.cpp. Its headers take 8 s to compile.
 class Command {
  public:
-  Command(CLI::App& app, ExitStatus& status) : app_(&app), status_(&status) {}
+  Command(CLI::App& app, ExitStatus& status);
 
   Command add_verb(const char* name, const char* help) const;
+  /// The same command; what is added to it stands in that section of the help.
+  Command in(const char* section) const;
   /// The verb that a word is likely to mean; empty where it is like none.
   std::string likely_verb(const std::string& word) const;
   void footer(const char* text) const;
@@ -57,7 +59,10 @@ class Command {
   void requires_kind(const char* advice) const;
 
   Option add_option(const std::string& names, std::string& value, const std::string& help) const;
+  /// One value each time it is given; it may be given several times.
   Option add_option(const std::string& names, std::vector<std::string>& values, const std::string& help) const;
+  /// Names that stand for themselves, as many as there are.
+  Option add_names(const std::string& name, std::vector<std::string>& values, const std::string& help) const;
   Option add_option(const std::string& names, int& value, const std::string& help) const;
   Option add_option(const std::string& names, std::size_t& value, const std::string& help) const;
   Option add_option(const std::string& names, double& value, const std::string& help) const;
@@ -65,8 +70,31 @@ class Command {
   Option add_flag(const std::string& names, bool& value, const std::string& help) const;
   Option option(const char* name) const;
 
+  /// What reads a text: it throws UsageError or tribofit::InputError.
+  using Read = std::function<void(const std::string&)>;
+  /// An option whose text is read when all are parsed, before the verb runs, in the order in which they were added.
+  Option add_read(const std::string& names, Read read, const std::string& help) const;
+  /// The same of one that may be given several times.
+  Option add_each(const std::string& names, Read read, const std::string& help) const;
+  /// A number with a unit, greater than zero, in SI. name: as messages have it.
+  Option add_quantity(const std::string& name, tribofit::Quantity quantity, std::function<void(double)> take,
+                      const std::string& help) const;
+  /// One of a few words, each of which stands for a value.
+  template <class T>
+  Option add_choice(const std::string& name, T& value, const std::vector<std::pair<std::string, T>>& choices,
+                    const std::string& help) const {
+    std::vector<std::string> words;
+    for (const auto& choice : choices) words.push_back(choice.first);
+    const auto read = [&value, choices](const std::string& text) {
+      for (const auto& [word, meaning] : choices) value = word == text ? meaning : value;
+    };
+    return add_read(name, read, help).one_of(words);
+  }
+
   /// What it does once its options are read. Not called where a verb of it is named.
   void on_run(std::function<ExitStatus()> run) const;
+  /// Reads what add_read() and its like hold; on_run() does. Usage error: an option that is given an empty value.
+  void read_options() const;
   /// Called with the name of the verb before that runs.
   void before_verb(std::function<void(const std::string& verb)> check) const;
 
@@ -78,7 +106,6 @@ class Command {
     std::string section;
   };
   std::vector<Typed> typed() const;
-  bool has_option(const char* name) const;
 
   /// What can be typed after a verb.
   struct Typable {
@@ -89,14 +116,16 @@ class Command {
   /// Of this command, then of each verb and the verbs of each.
   std::vector<Typable> typables() const;
 
-  /// Usage error: an option given an empty value.
-  void refuse_empty_values() const;
   /// The options as typed that shape the analysis, for the next command; where `wanted` is given, those of them.
   std::vector<std::string> own_options(const std::function<bool(const Typed&)>& wanted = {}) const;
 
  private:
+  Option added(CLI::Option* option) const;
+
   CLI::App* app_;
   ExitStatus* status_;
+  const char* section_ = nullptr;
+  std::shared_ptr<std::vector<std::function<void()>>> readers_;
 };
 
 /// Parses a command line and runs what it names. setup: adds options and verbs. Usage errors are printed; what a verb
@@ -109,5 +138,5 @@ struct Program {
 };
 ExitStatus run_program(const Program& program, int argc, char** argv, const std::function<void(const Command&)>& setup);
 
-/// Parses words by the options that setup adds; throws UsageError where they do not fit.
+/// Reads words by the options that setup adds; throws UsageError where they do not fit.
 void parse_words(std::vector<std::string> words, const std::function<void(const Command&)>& setup);

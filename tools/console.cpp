@@ -138,9 +138,13 @@ void ProgressLine::show(std::string_view words, double part) {
   shown_ = true;
 }
 
-std::string folded(const std::string& sentence, std::size_t indent) {
+std::size_t prose_width() {
   constexpr std::size_t kNarrowest = 80, kWidest = 120;
-  const std::size_t width = std::clamp(terminal_width(), kNarrowest, kWidest);
+  return std::clamp(terminal_width(), kNarrowest, kWidest);
+}
+
+std::string folded(const std::string& sentence, std::size_t indent) {
+  const std::size_t width = prose_width();
   std::string out;
   std::size_t column = 0;
   for (std::size_t at = 0; at < sentence.size();) {

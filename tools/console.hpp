@@ -42,7 +42,10 @@ class ProgressLine {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now(), next_{};
 };
 
-/// A sentence broken to the width of the terminal, at most 120; lines after the first have `indent` blanks.
+/// Columns of prose: those of the terminal, but 80 to 120.
+std::size_t prose_width();
+
+/// A sentence broken to that width; lines after the first have `indent` blanks.
 std::string folded(const std::string& sentence, std::size_t indent = 0);
 
 /// "identify: error: TEXT" to standard error.

@@ -3,11 +3,9 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis_options.hpp"
 #include "console.hpp"
 #include "diagnosed_runs.hpp"
 #include "inputs.hpp"
-#include "options.hpp"
 #include "results.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/pipeline.hpp"
@@ -33,16 +31,11 @@ constexpr const char* kDiagnoseFooter =
 
 ExitStatus run_diagnose(const Settings& s, const std::vector<std::string>& arguments) {
   const IdentifyOptions options = options_from(s);
-  if (s.traces.empty()) throw UsageError("no trace given; try `identify diagnose --radius 15mm trace.csv`");
   LeftOut left_out;
-  const Split split = usable_runs(s, options, left_out);
-  for (const std::string& reason : left_out.reasons) print_error("left out: " + reason);
-  if (split.diagnosed.empty()) {
-    print_error("no record is left to diagnose");
-    return left_out.any_read ? ExitStatus::failed : ExitStatus::bad_input;
-  }
+  const Split split = usable_runs(s, options, "diagnose", left_out);
+  if (split.diagnosed.empty()) return left_out.any_read ? ExitStatus::failed : ExitStatus::bad_input;
   DiagnoseOptions more;
-  more.diagnosis.threads = s.threads;
+  more.diagnosis.threads = options.threads;
   more.diagnosis.until = end_of(s.time_limit);
   more.confirm = traces_of(split.kept);
   DiagnosedTraces result;
@@ -52,12 +45,8 @@ ExitStatus run_diagnose(const Settings& s, const std::vector<std::string>& argum
     result = diagnose(traces_of(split.diagnosed), options, more);
   }
   add_remarks(split, result);
-  const bool alone = split.diagnosed.size() == 1;
-  const std::vector<std::string> own = alone ? arguments_for(split.diagnosed.front(), arguments) : arguments;
-  const std::vector<std::string> inputs = alone ? std::vector{split.diagnosed.front().trace.path} : s.traces;
-  TerminalOptions terminal = terminal_options(s, own);
-  terminal.inputs = inputs;
-  deliver(s, {[&] { return report_of(result, terminal); }, [&] { return to_json(result, {arguments}); },
+  const TerminalOptions shown = shown_as(split, s, arguments);
+  deliver(s, {[&] { return report_of(result, shown); }, [&] { return to_json(result, {arguments}); },
               [&](const std::string& folder) { write_csv_folder(folder, result); }});
   if (result.analysed && result.diagnosis.verdict != Verdict::not_enough_data)
     return left_out.reasons.empty() ? ExitStatus::done : ExitStatus::failed;
@@ -73,10 +62,9 @@ void add_diagnose(const Command& app) {
   const auto settings = std::make_shared<Settings>();
   add_input_options(verb, *settings);
   add_spring_options(verb, *settings);
-  verb.add_option("--confirm", settings->confirm,
-                  "A run held back from the diagnosis to confirm the finding (repeatable)")
-      .one_value_each()
-      .group(section::kReading);
+  verb.in(section::kReading)
+      .add_option("--confirm", settings->confirm,
+                  "A run held back from the diagnosis to confirm the finding (repeatable)");
   verb.add_option("--time-limit", settings->time_limit,
                   "End the search for effects after this time (10s, 2min) and report what is known");
   add_model_options(verb, *settings);
@@ -84,9 +72,5 @@ void add_diagnose(const Command& app) {
   add_selection_options(verb, *settings);
   add_output_options(verb, *settings);
   add_report_option(verb, *settings);
-  verb.on_run([settings, verb] {
-    verb.refuse_empty_values();
-    check_seed(*settings);
-    return run_diagnose(*settings, verb.own_options());
-  });
+  verb.on_run([settings, verb] { return run_diagnose(*settings, verb.own_options()); });
 }

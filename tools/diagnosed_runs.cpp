@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <utility>
 
-#include "analysis_options.hpp"
+#include "console.hpp"
 #include "exit_status.hpp"
 #include "results.hpp"
-#include "stated_value.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/pipeline.hpp"
+#include "typed_values.hpp"
 
 using namespace tribofit;
 
@@ -18,7 +18,8 @@ namespace {
 void check_usage(const Settings& s, const Split& split) {
   if (split.diagnosed.empty())
     throw UsageError("every trace is held back to confirm the finding; leave one to diagnose");
-  if (split.diagnosed.size() > 1 && (!s.second_file.empty() || !s.continued_in.empty())) {
+  const ReadOptions& read = s.identify.read;
+  if (split.diagnosed.size() > 1 && (!read.second_file.empty() || !read.continued_in.empty())) {
     throw UsageError("--with and --continue need one trace at a time");
   }
   for (std::size_t k = 0; k < split.diagnosed.size(); ++k) {  // the same evidence may not count twice
@@ -87,7 +88,15 @@ std::string reason_of(const DiagnosedTraces& result) {
   return "there are too few cycles to hold any out";
 }
 
-Split usable_runs(const Settings& s, const IdentifyOptions& options, LeftOut& left_out) {
+TerminalOptions shown_as(const Split& split, const Settings& s, const std::vector<std::string>& arguments) {
+  const bool alone = split.diagnosed.size() == 1;
+  TerminalOptions out = terminal_options(s, alone ? arguments_for(split.diagnosed.front(), arguments) : arguments);
+  out.inputs = alone ? std::vector{split.diagnosed.front().trace.path} : s.traces;
+  return out;
+}
+
+Split usable_runs(const Settings& s, const IdentifyOptions& options, const std::string& verb, LeftOut& left_out) {
+  if (s.traces.empty()) throw UsageError("no trace given; try `identify " + verb + " --radius 15mm trace.csv`");
   FindOptions find;
   find.errors = ManifestErrors::collect;
   Campaign campaign = find_runs(s.traces, options.read, find);
@@ -106,18 +115,17 @@ Split usable_runs(const Settings& s, const IdentifyOptions& options, LeftOut& le
     inputs = std::move(usable);
   };
   if (runs.size() > 1) leave_unusable_out(runs);
-  if (runs.empty()) return {};
-  Split split = keep_for_confirmation(std::move(runs), s.confirm, options.read);
+  Split split;
+  if (!runs.empty()) split = keep_for_confirmation(std::move(runs), s.confirm, options.read);
   if (!s.confirm.empty()) leave_unusable_out(split.kept);
+  for (const std::string& reason : left_out.reasons) print_error("left out: " + reason);
+  if (split.diagnosed.empty()) print_error("no record is left to " + verb + (verb == "plan" ? " from" : ""));
   return split;
 }
 
 std::optional<std::chrono::steady_clock::time_point> end_of(const std::string& time_limit) {
   using Clock = std::chrono::steady_clock;
   if (time_limit.empty()) return std::nullopt;
-  constexpr double kLongest = 1e8;  // s, three years
-  const double seconds = stated_value(time_limit, Quantity::time, "--time-limit");
-  if (!(seconds > 0 && seconds < kLongest))
-    throw InputError("--time-limit: '" + time_limit + "' is no time to work in", "give a time such as 10s or 2min");
-  return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  const std::chrono::duration<double> seconds(positive_value(time_limit, Quantity::time, "--time-limit"));
+  return Clock::now() + std::chrono::duration_cast<Clock::duration>(seconds);
 }

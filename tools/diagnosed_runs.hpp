@@ -18,8 +18,14 @@ struct LeftOut {
   bool any_read = false;  ///< one could be read, but not analysed
 };
 
-/// The runs that can be used. A single one is taken as it is: the diagnosis itself says what stops it.
-Split usable_runs(const Settings& settings, const tribofit::IdentifyOptions& options, LeftOut& left_out);
+/// The runs that can be used, for that verb; what is left out is printed. A single one is taken as it is: the diagnosis
+/// itself says what stops it.
+Split usable_runs(const Settings& settings, const tribofit::IdentifyOptions& options, const std::string& verb,
+                  LeftOut& left_out);
+
+/// How the result of these runs is shown here and now: a single one by its own name and conditions.
+tribofit::TerminalOptions shown_as(const Split& split, const Settings& settings,
+                                   const std::vector<std::string>& arguments);
 
 std::vector<tribofit::TraceInput> traces_of(const std::vector<Input>& inputs);
 

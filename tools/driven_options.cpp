@@ -1,14 +1,11 @@
-#include "driven_options.hpp"
-
 #include <algorithm>
 #include <array>
 #include <string_view>
 
 #include "exit_status.hpp"
-#include "stated_value.hpp"
-#include "tribofit/ingest/input_error.hpp"
+#include "settings.hpp"
 #include "tribofit/ingest/spelling.hpp"
-#include "tribofit/ingest/units.hpp"
+#include "typed_values.hpp"
 
 using namespace tribofit;
 
@@ -25,16 +22,15 @@ constexpr std::array<Named, 6> kParameters = {{{"a", Quantity::dimensionless, "a
                                                {"b_2", Quantity::dimensionless, "b_2=0.002"},
                                                {"D_c2", Quantity::length, "D_c2=100um"},
                                                {"k", Quantity::inverse_length, "k=0.005/um"}}};
-
 constexpr Named kBaseFriction = {"mu_0", Quantity::dimensionless, "mu_0=0.6"};
 
 bool is_stated(const Settings& s) {
-  return names_load_point_speeds(s) || is_driven_in_steps(find_record_kind(s.kind));
+  return names_load_point_speeds(s) || is_driven_in_steps(s.identify.read.kind);
 }
 
 /// What is stated, or else the file, may say that the load point is driven in steps.
 bool may_be_driven(const Settings& s) {
-  return s.kind.empty() || is_stated(s);
+  return !s.identify.read.kind || is_stated(s);
 }
 
 const Named* find_parameter(std::string_view name) {
@@ -44,44 +40,16 @@ const Named* find_parameter(std::string_view name) {
 
 /// A bare number would be one of metres: a million times what is meant.
 void require_unit(std::string_view text, const std::string& option, const char* example) {
-  const std::string_view spelled = trimmed(text);
-  if (!spelled.empty() && spelled.find_first_not_of("+-.0123456789eE ") == std::string_view::npos)
-    throw UsageError(option + ": '" + std::string(spelled) + "' has no unit; give it, as in " + example);
+  if (is_bare_number(text))
+    throw UsageError(option + ": '" + std::string(trimmed(text)) + "' has no unit; give it, as in " + example);
 }
 
 /// "0.005/um" is 0.005 1/um.
-double parameter_value(const std::string& text, const Named& parameter, const std::string& option, Quantity quantity) {
-  std::string spelled(trimmed(text));
+double value_of(std::string spelled, const Named& parameter, const std::string& option, Quantity quantity) {
   if (parameter.quantity != Quantity::dimensionless) require_unit(spelled, option, parameter.example);
-  const std::size_t slash = spelled.find('/');
-  if (parameter.quantity == Quantity::inverse_length && slash != std::string::npos && slash > 0 &&
-      spelled.find_first_not_of("+-.0123456789eE ") == slash)
-    spelled.insert(slash, " 1");
+  if (parameter.quantity == Quantity::inverse_length && unit_of(spelled).starts_with('/') && spelled.front() != '/')
+    spelled.insert(spelled.find('/'), " 1");
   return parse_quantity(spelled, quantity, option + " " + std::string(parameter.name));
-}
-
-GivenParameter& entry_named(std::string_view name, std::vector<GivenParameter>& given) {
-  const auto found = std::find_if(given.begin(), given.end(), [&](const auto& g) { return g.name == name; });
-  if (found != given.end()) return *found;
-  given.push_back({std::string(name), std::nullopt, std::nullopt});
-  return given.back();
-}
-
-/// Calls take(parameter, text) for each "NAME=TEXT" that names one of these parameters.
-template <class Take>
-void for_each_given(const std::vector<std::string>& texts, const std::vector<GivenParameter>& fitted, Take&& take) {
-  for (const std::string& text : texts) {
-    for (const std::string& part : split(text, ',')) {
-      const std::size_t equals = part.find('=');
-      if (equals == std::string::npos) continue;
-      const Named* parameter = find_parameter(trimmed(std::string_view(part).substr(0, equals)));
-      const auto is_its = [&](const GivenParameter& g) {
-        return g.name == parameter->name || g.name.ends_with("." + std::string(parameter->name));
-      };
-      if (parameter == nullptr || std::any_of(fitted.begin(), fitted.end(), is_its)) continue;
-      take(*parameter, part.substr(equals + 1));
-    }
-  }
 }
 
 /// A value of a fit: of friction in newtons a and b are forces, and k is a stiffness.
@@ -92,30 +60,7 @@ double given_value(const std::string& text, const Named& parameter, const std::s
   const Quantity quantity = !in_newtons                                      ? parameter.quantity
                             : parameter.quantity == Quantity::inverse_length ? Quantity::stiffness
                                                                              : Quantity::force;
-  return parameter_value(text, parameter, option, quantity);
-}
-
-/// fitted: what is given of other names.
-void read_given(const Settings& s, const std::vector<GivenParameter>& fitted, RateStateOptions& options) {
-  std::vector<GivenParameter>& given = options.given;
-  for_each_given(s.start_values, fitted, [&](const Named& parameter, const std::string& text) {
-    entry_named(parameter.name, given).start = given_value(text, parameter, "--start", options);
-  });
-  for_each_given(s.bounds, fitted, [&](const Named& parameter, const std::string& text) {
-    const std::size_t dots = text.find("..");
-    if (dots == std::string::npos) throw UsageError("--bounds: '" + text + "' is not FROM..TO, as in D_c=2um..50um");
-    std::string low = text.substr(0, dots), high = text.substr(dots + 2);
-    const std::size_t unit = high.find_first_not_of("+-.0123456789eE ");
-    if (unit != std::string::npos && low.find_first_not_of("+-.0123456789eE ") == std::string::npos)
-      low += high.substr(unit);
-    const GivenParameter::Bounds bounds = {given_value(low, parameter, "--bounds", options),
-                                           given_value(high, parameter, "--bounds", options)};
-    const bool positive = parameter.quantity == Quantity::dimensionless || bounds.lower > 0;
-    if (bounds.lower > bounds.upper || !positive)
-      throw UsageError("--bounds: '" + text + "' of " + std::string(parameter.name) +
-                       (positive ? " runs from high to low" : " begins at zero or below"));
-    entry_named(parameter.name, given).bounds = bounds;
-  });
+  return value_of(text, parameter, option, quantity);
 }
 
 }  // namespace
@@ -124,16 +69,41 @@ bool is_rate_state_parameter(const Settings& s, const std::string& name) {
   return may_be_driven(s) && find_parameter(name) != nullptr;
 }
 
+void read_driven(const Settings& s, const std::vector<GivenParameter>& of_laws, RateStateOptions& options) {
+  if (!may_be_driven(s)) return;
+  /// Those that name one of these parameters.
+  const auto own = [&](const std::vector<std::string>& texts, const std::string& option, const char* example) {
+    NamedTexts found = named_texts(texts, option, example);
+    std::erase_if(found, [&](const auto& named) {
+      const auto is_its = [&](const GivenParameter& g) { return g.name == named.first; };
+      return find_parameter(named.first) == nullptr ||
+             (!is_stated(s) && std::any_of(of_laws.begin(), of_laws.end(), is_its));
+    });
+    return found;
+  };
+  for (const auto& [name, text] : own(s.start_values, "--start", kStartExample))
+    given_entry(name, options.given).start = given_value(text, *find_parameter(name), "--start", options);
+  for (const auto& [name, text] : own(s.bounds, "--bounds", kBoundsExample)) {
+    const Named& parameter = *find_parameter(name);
+    const auto [low, high] = as_usage([&, &typed = text] { return range_ends(typed, "--bounds", "D_c=2um..50um"); });
+    const GivenParameter::Bounds bounds = {given_value(low, parameter, "--bounds", options),
+                                           given_value(high, parameter, "--bounds", options)};
+    const bool positive = parameter.quantity == Quantity::dimensionless || bounds.lower > 0;
+    if (bounds.lower > bounds.upper || !positive)
+      throw UsageError("--bounds: '" + text + "' of " + name +
+                       (positive ? " runs from high to low" : " begins at zero or below"));
+    given_entry(name, options.given).bounds = bounds;
+  }
+}
+
 std::map<std::string, double> rate_state_values(const std::string& text, const std::string& option) {
+  const std::string example = "NAME=VALUE of a, b, D_c, k, mu_0, b_2 or D_c2";
   std::map<std::string, double> values;
   if (text.empty()) return values;
-  for (const std::string& part : split(text, ',')) {
-    const std::size_t equals = part.find('=');
-    const std::string name(trimmed(std::string_view(part).substr(0, equals)));
-    const Named* parameter = name == "mu_0" ? &kBaseFriction : find_parameter(name);
-    if (equals == std::string::npos || parameter == nullptr)
-      throw UsageError(option + ": '" + part + "' is not NAME=VALUE of a, b, D_c, k, mu_0, b_2 or D_c2");
-    values[name] = parameter_value(part.substr(equals + 1), *parameter, option, parameter->quantity);
+  for (const auto& [name, value] : named_texts({text}, option, example)) {
+    const Named* parameter = name == kBaseFriction.name ? &kBaseFriction : find_parameter(name);
+    if (parameter == nullptr) throw UsageError(option + ": '" + name + "=" + value + "' is not " + example);
+    values[name] = value_of(value, *parameter, option, parameter->quantity);
   }
   return values;
 }
@@ -143,13 +113,12 @@ bool names_load_point_speeds(const Settings& s) {
 }
 
 std::vector<LoadPointPhase> phases_from(const std::string& text, const std::string& option) {
+  const std::string example = "TIME:SPEED, as in 0s:2um/s,60s:10um/s";
   std::vector<LoadPointPhase> phases;
   for (const std::string& part : split(text, ',')) {
-    const std::size_t colon = part.find(':');
-    if (colon == std::string::npos)
-      throw UsageError(option + ": '" + part + "' is not TIME:SPEED, as in 0s:2um/s,60s:10um/s");
-    const double begin = stated_value(part.substr(0, colon), Quantity::time, option, "s");
-    const std::string speed(trimmed(part.substr(colon + 1)));
+    const auto [time, rest] = as_usage([&] { return two_parts(part, ":", option, example); });
+    const double begin = stated_value(time, Quantity::time, option, "s");
+    const std::string speed(trimmed(rest));
     const bool rests = !speed.empty() && speed.find_first_not_of("0.") == std::string::npos;
     if (!rests) require_unit(speed, option, "0s:2um/s,60s:10um/s");
     const double value = rests ? 0 : stated_value(speed, Quantity::velocity, option);
@@ -170,27 +139,5 @@ std::vector<LoadPointPhase> load_point_from(const Settings& s, std::optional<Rec
 
 double reference_speed_from(const std::string& text) {
   require_unit(text, "--reference-speed", "1um/s");
-  const double speed = stated_value(text, Quantity::velocity, "--reference-speed");
-  if (!(speed > 0)) throw UsageError("--reference-speed is not above zero");
-  return speed;
-}
-
-RateStateOptions driven_options_from(const Settings& s, const std::vector<GivenParameter>& fitted) {
-  RateStateOptions options;
-  if (!s.evolutions.empty()) options.evolutions.clear();
-  for (const std::string& name : s.evolutions) {
-    const auto found = find_state_evolution(name);
-    const auto& known = options.evolutions;
-    if (found && std::find(known.begin(), known.end(), *found) == known.end()) options.evolutions.push_back(*found);
-  }
-  options.states = static_cast<std::size_t>(s.states);
-  options.detrend = find_detrend(s.detrend).value_or(Detrend::automatic);
-  if (!s.reference_speed.empty()) {
-    options.reference_speed = reference_speed_from(s.reference_speed);
-  }
-  if (!s.from.empty()) options.from = stated_value(s.from, Quantity::time, "--from", "s");
-  if (!s.to.empty()) options.to = stated_value(s.to, Quantity::time, "--to", "s");
-  if (!(options.from < options.to)) throw UsageError("--from and --to leave nothing between them");
-  if (may_be_driven(s)) read_given(s, is_stated(s) ? std::vector<GivenParameter>() : fitted, options);
-  return options;
+  return positive_value(text, Quantity::velocity, "--reference-speed");
 }

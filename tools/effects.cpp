@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "console.hpp"
-#include "parameter_options.hpp"
+#include "settings.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/oscillator/fingerprint.hpp"
 #include "tribofit/report/terminal.hpp"

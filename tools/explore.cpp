@@ -15,11 +15,9 @@
 #include <utility>
 #include <vector>
 
-#include "analysis_options.hpp"
 #include "console.hpp"
 #include "inputs.hpp"
 #include "memory.hpp"
-#include "options.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/text_of_file.hpp"
 #include "tribofit/workbench/server.hpp"
@@ -49,14 +47,19 @@ void add_options(const Command& app, ExploreSettings& s) {
   add_model_options(app, s);
   add_parameter_options(app, s);
   add_selection_options(app, s);
-  app.add_option("--session", s.session, "Go on with a session that the page saved (the trace is named in it)")
-      .group(section::kServer);
-  app.add_option("--port", s.port, "Port of 127.0.0.1 to listen on (default: a free one)")
-      .range(1, 65535)
-      .group(section::kServer);
-  app.add_option("--threads", s.threads, "Threads (default: all; the result is the same)")
-      .range(0, 1024)
-      .group(section::kServer);
+  const Command server = app.in(section::kServer);
+  server.add_option("--session", s.session, "Go on with a session that the page saved (the trace is named in it)");
+  server.add_option("--port", s.port, "Port of 127.0.0.1 to listen on (default: a free one)").range(1, 65535);
+  add_threads_option(server, s);
+}
+
+/// What the words say, but for the threads of the server.
+ExploreSettings settings_of(std::vector<std::string> words, const std::string& trace, int threads) {
+  ExploreSettings s;
+  words.push_back(trace);
+  parse_words(std::move(words), [&](const Command& explore) { add_options(explore, s); });
+  s.identify.threads = threads;
+  return s;
 }
 
 std::string text_of_session(const std::string& path) {
@@ -64,19 +67,22 @@ std::string text_of_session(const std::string& path) {
   return tribofit::text_of_file(path, kMost, "give --session a file that the page saved");
 }
 
-/// What the command line says of the fit without the choice, which the page changes.
-std::vector<std::string> without_choice(const std::vector<std::string>& arguments) {
-  const std::vector<std::string> of_choice = {"--law",    "--effect", "--formula", "--start",
-                                              "--bounds", "--cycles", "--exclude"};
+/// The words of a command line without these options and their values.
+std::vector<std::string> without(const std::vector<std::string>& options, const std::vector<std::string>& words) {
   std::vector<std::string> out;
-  for (std::size_t k = 0; k < arguments.size(); ++k) {
-    if (std::find(of_choice.begin(), of_choice.end(), arguments[k]) == of_choice.end()) {
-      out.push_back(arguments[k]);
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    if (std::find(options.begin(), options.end(), words[k]) == options.end()) {
+      out.push_back(words[k]);
     } else {
       ++k;  // with its value
     }
   }
   return out;
+}
+
+/// What the command line says of the fit without the choice, which the page changes.
+std::vector<std::string> without_choice(const std::vector<std::string>& words) {
+  return without({"--law", "--effect", "--formula", "--start", "--bounds", "--cycles", "--exclude"}, words);
 }
 
 /// Formulas as typed; those of files are read now, as no file is read later.
@@ -108,32 +114,15 @@ WorkbenchOptions options_for(const ExploreSettings& s, const std::vector<std::st
   return options;
 }
 
-/// The settings with other conditions; those not stated are found in the record, as ever.
-ExploreSettings with_conditions(ExploreSettings s, const StatedConditions& conditions) {
+/// The words with other conditions; those not stated are found in the record, as ever.
+std::vector<std::string> with_conditions(const std::vector<std::string>& words, const StatedConditions& conditions) {
+  std::vector<std::string> out, names;
   for (const auto& [name, value] : conditions) {
-    if (name == "radius") s.radius = value;
-    if (name == "speed") s.speed = value;
-    if (name == "load") s.load = value;
+    names.push_back("--" + name);
+    if (!value.empty()) out.insert(out.end(), {names.back(), value});
   }
-  return s;
-}
-
-std::vector<std::string> with_conditions(const std::vector<std::string>& arguments,
-                                         const StatedConditions& conditions) {
-  std::vector<std::string> out;
-  for (const auto& [name, value] : conditions) {
-    if (!value.empty()) out.insert(out.end(), {"--" + name, value});
-  }
-  const auto is_condition = [&](const std::string& word) {
-    return std::any_of(conditions.begin(), conditions.end(), [&](const auto& c) { return word == "--" + c.first; });
-  };
-  for (std::size_t k = 0; k < arguments.size(); ++k) {
-    if (is_condition(arguments[k])) {
-      ++k;  // with its value
-    } else {
-      out.push_back(arguments[k]);
-    }
-  }
+  const std::vector<std::string> others = without(names, words);
+  out.insert(out.end(), others.begin(), others.end());
   return out;
 }
 
@@ -150,23 +139,17 @@ void refuse_beside_session(const std::vector<std::string>& arguments) {
 }
 
 /// The settings that a saved session was begun with, but for what is given to the server itself now.
-void take_over(const std::string& text, ExploreSettings& s) {
-  const SavedWorkbench saved = saved_workbench(text, s.session);
-  ExploreSettings earlier;
-  std::vector<std::string> words = saved.arguments;
-  words.push_back(saved.trace);
+void take_over(const SavedWorkbench& saved, ExploreSettings& s) {
+  const ExploreSettings now = s;
   try {
-    parse_words(std::move(words), [&](const Command& explore) { add_options(explore, earlier); });
+    s = settings_of(saved.arguments, saved.trace, now.identify.threads);
   } catch (const UsageError& error) {
     throw InputError(std::string("holds options that cannot be read: ") + error.what(), "save the session again",
-                     {s.session, 0, ""});
+                     {now.session, 0, ""});
   }
-  const ExploreSettings now = s;
-  s = earlier;
   if (!now.traces.empty()) s.traces = now.traces;
   s.session = now.session;
   s.port = now.port;
-  s.threads = now.threads;
 }
 
 /// Signals that end the server in an orderly way, held back from every thread but the one that waits for them.
@@ -236,8 +219,9 @@ ExitStatus run_explore(ExploreSettings& s, const std::vector<std::string>& given
   std::string saved;
   if (!s.session.empty()) {
     saved = text_of_session(s.session);
-    take_over(saved, s);
-    arguments = saved_workbench(saved, s.session).arguments;
+    const SavedWorkbench earlier = saved_workbench(saved, s.session);
+    take_over(earlier, s);
+    arguments = earlier.arguments;
   }
   keep_memory();
   WorkbenchSession session(options_for(s, arguments));
@@ -245,8 +229,9 @@ ExitStatus run_explore(ExploreSettings& s, const std::vector<std::string>& given
   allow_many_connections();
   const Reread reread = [&](const StatedConditions& conditions) {
     try {
+      const std::vector<std::string> words = with_conditions(arguments, conditions);
       return std::make_unique<WorkbenchSession>(
-          options_for(with_conditions(s, conditions), with_conditions(arguments, conditions)));
+          options_for(settings_of(words, s.traces.front(), s.identify.threads), words));
     } catch (const UsageError& error) {
       throw InputError(error.what(), "give conditions as the command line takes them: 15mm, 4rpm, 50N");
     }
@@ -266,8 +251,6 @@ void add_explore(const Command& app) {
   const auto settings = std::make_shared<ExploreSettings>();
   add_options(verb, *settings);
   verb.on_run([settings, verb] {
-    verb.refuse_empty_values();
-    check_seed(*settings);
     if (!settings->session.empty()) refuse_beside_session(verb.own_options());
     if (settings->traces.empty() && settings->session.empty())
       throw UsageError("no trace given; try `identify explore --radius 15mm trace.csv`");

@@ -6,18 +6,17 @@
 #include <string>
 #include <vector>
 
-#include "analysis_options.hpp"
 #include "batch.hpp"
 #include "console.hpp"
 #include "inputs.hpp"
 #include "memory.hpp"
-#include "options.hpp"
 #include "results.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/report/csv.hpp"
 #include "tribofit/report/json.hpp"
 #include "tribofit/report/terminal.hpp"
+#include "typed_values.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;
@@ -38,8 +37,8 @@ void check_usage(const Settings& s, const std::vector<Input>& inputs) {
     alone(!s.csv.empty(), "--csv");
     alone(!s.report.empty(), "--report");
     alone(!s.figures.empty(), "--figures");
-    alone(!s.second_file.empty(), "--with");
-    alone(!s.continued_in.empty(), "--continue");
+    alone(!s.identify.read.second_file.empty(), "--with");
+    alone(!s.identify.read.continued_in.empty(), "--continue");
   }
   std::vector<std::string> files = input_files(s);
   for (const Input& input : inputs) files.push_back(input.trace.path);
@@ -51,8 +50,7 @@ ExitStatus run_one(const Settings& s, const Input& input, const IdentifyOptions&
   IdentifyOptions own = options;
   own.read = input.trace.read;
   Identification result = identify(input.trace.path, own);
-  result.notes.insert(result.notes.end(), input.notes.begin(), input.notes.end());
-  result.warnings.insert(result.warnings.begin(), input.warnings.begin(), input.warnings.end());
+  add_remarks(input, result);
   const std::vector<std::string> alone = arguments_for(input, arguments);
   deliver(s,
           {[&] { return report_of(result, terminal_options(s, alone)); }, [&] { return to_json(result, {arguments}); },
@@ -86,13 +84,11 @@ ExitStatus run_all(const Settings& s, const std::vector<Input>& inputs, const Id
 }
 
 void add_batch_options(const Command& app, Settings& s) {
-  app.add_option("--out", s.out, "Folder of the results of many traces (default FOLDER-results)")
-      .group(section::kBatch);
-  app.add_option("--pattern", s.pattern, "How file names state the conditions: 'r{radius}mm_{repeat}.csv'")
-      .group(section::kBatch);
-  app.add_option("--shard", s.shard, "Only every N-th run, from the I-th: I/N; `identify merge` combines them")
-      .group(section::kBatch);
-  app.add_flag("--again", s.again, "Fit runs that already have a result, too").group(section::kBatch);
+  const Command in = app.in(section::kBatch);
+  in.add_option("--out", s.out, "Folder of the results of many traces (default FOLDER-results)");
+  in.add_option("--pattern", s.pattern, "How file names state the conditions: 'r{radius}mm_{repeat}.csv'");
+  in.add_option("--shard", s.shard, "Only every N-th run, from the I-th: I/N; `identify merge` combines them");
+  in.add_flag("--again", s.again, "Fit runs that already have a result, too");
   add_compare_option(app, s);
 }
 
@@ -100,10 +96,10 @@ void add_fit_options(const Command& app, Settings& s) {
   add_model_options(app, s);
   add_parameter_options(app, s);
   add_selection_options(app, s);
-  app.add_option("--protocol", s.protocol, "joint, published (per-cycle extremes), or both (default)")
-      .one_of({"both", "joint", "published"})
-      .group("Law and fit");
-  app.add_flag("--profile", s.profile, "Profile likelihood intervals as well").group("Law and fit");
+  const Command in = app.in(section::kFit);
+  in.add_option("--protocol", s.protocol, "joint, published (per-cycle extremes), or both (default)")
+      .one_of({"both", "joint", "published"});
+  in.add_flag("--profile", s.identify.fit.profile, "Profile likelihood intervals as well");
 }
 
 /// Usage error: a verb that is misspelt is taken for a trace, and no file has its name.
@@ -116,20 +112,12 @@ void refuse_misspelt_verb(const Command& app, const std::vector<std::string>& tr
         fmt::format("'{}' is neither a verb nor a file; did you mean `identify {}`?", traces.front(), verb));
 }
 
-NamePattern pattern_from(const std::string& text) {
-  try {
-    return NamePattern(text);
-  } catch (const InputError& error) {
-    throw UsageError(error.what());
-  }
-}
-
 ExitStatus run_identify(const Settings& s, const std::vector<std::string>& arguments) {
   const IdentifyOptions options = options_from(s);  // says first where an option has taken the trace for its value
   if (s.traces.empty()) throw UsageError("no trace given; try `identify --radius 15mm trace.csv`");
   FindOptions find;
   find.errors = ManifestErrors::collect;
-  if (!s.pattern.empty()) find.pattern = pattern_from(s.pattern);
+  if (!s.pattern.empty()) find.pattern = as_usage([&] { return NamePattern(s.pattern); });
   Campaign campaign = find_runs(s.traces, options.read, find);
   if (is_batch(s, campaign)) return run_as_batch(s, std::move(campaign), options, arguments);
   std::vector<Input> inputs = std::move(campaign.runs);
@@ -161,9 +149,7 @@ void add_identify(const Command& app) {
     throw UsageError("put the options after '" + verb + "': identify " + verb + " [OPTIONS]");
   });
   app.on_run([settings, app] {
-    app.refuse_empty_values();
     refuse_misspelt_verb(app, settings->traces);
-    check_seed(*settings);
     return run_identify(*settings, app.own_options());
   });
 }

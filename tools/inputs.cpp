@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "analysis_options.hpp"
 #include "exit_status.hpp"
 #include "results.hpp"
 #include "tribofit/ingest/units.hpp"
+#include "tribofit/output/digits.hpp"
 
 using namespace tribofit;
 
@@ -60,12 +60,17 @@ Input only_input(const Settings& s, const ReadOptions& read, const std::string& 
   return std::move(inputs.front());
 }
 
+void add_remarks(const Input& input, TracePart& trace) {
+  trace.notes.insert(trace.notes.end(), input.notes.begin(), input.notes.end());
+  trace.warnings.insert(trace.warnings.begin(), input.warnings.begin(), input.warnings.end());
+}
+
 std::vector<std::string> arguments_for(const Input& input, std::vector<std::string> arguments) {
   const Conditions& conditions = input.trace.read.conditions;
   const auto add = [&](const char* option, const Condition& condition, double unit, const char* name) {
     if (condition.source != kManifest) return;
     arguments.emplace_back(option);
-    arguments.push_back(fmt::format("{:.6g}{}", condition.value / unit, name));
+    arguments.push_back(general(condition.value / unit) + name);
   };
   add("--radius", conditions.radius, 1e-3, "mm");
   add("--speed", conditions.speed, kRpm, "rpm");

@@ -12,6 +12,9 @@ using Input = tribofit::Run;
 /// several, or where an output would overwrite an input.
 Input only_input(const Settings& settings, const tribofit::ReadOptions& read, const std::string& verb);
 
+/// What is known of an input besides the data.
+void add_remarks(const Input& input, tribofit::TracePart& trace);
+
 /// The user's own options and the conditions that came from the manifest, so that the trace can be named alone.
 std::vector<std::string> arguments_for(const Input& input, std::vector<std::string> arguments);
 

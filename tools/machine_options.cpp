@@ -6,13 +6,14 @@
 #include <optional>
 
 #include "exit_status.hpp"
-#include "parameter_options.hpp"
-#include "stated_value.hpp"
+#include "settings.hpp"
 #include "tribofit/friction/formula.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
+#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/oscillator/presets.hpp"
+#include "typed_values.hpp"
 
 namespace tribofit {
 namespace {
@@ -39,36 +40,18 @@ RequestedEffect read_effect(const std::string& text) {
     names.push_back(parameter.name);
     requested.values.push_back(parameter.start * parameter.si);
   }
-  std::size_t begin = colon == std::string::npos ? text.size() : colon + 1;
-  while (begin < text.size()) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    const std::string part = text.substr(begin, end - begin);
-    begin = end + 1;
-    const auto equals = part.find('=');
-    if (equals == std::string::npos) {
-      throw UsageError("'" + part + "' in --effect " + text + " is not name=value; write it as " + info.spelled() +
-                       (info.option.empty() ? ":" : ",") + names.front() + "=VALUE");
-    }
-    const auto found = std::find(names.begin(), names.end(), part.substr(0, equals));
+  if (colon >= text.size()) return requested;
+  const std::string form = info.spelled() + (info.option.empty() ? ":" : ",") + names.front() + "=VALUE";
+  for (const auto& [name, value] : named_texts({text.substr(colon + 1)}, "--effect " + text, "written as " + form)) {
+    const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
-      throw UsageError("the effect '" + info.key + "' has no parameter '" + part.substr(0, equals) +
-                       "'; did you mean '" + nearest_name(part.substr(0, equals), names) + "'?");
+      throw UsageError("the effect '" + info.key + "' has no parameter '" + name + "'; did you mean '" +
+                       nearest_name(name, names) + "'?");
     }
     const auto k = static_cast<std::size_t>(found - names.begin());
-    const Parameter& parameter = info.parameters[k];
-    const std::optional<Unit> unit = find_unit(parameter.unit);
-    requested.values[k] = stated_value(part.substr(equals + 1), unit ? unit->quantity : Quantity::dimensionless,
-                                       info.key + ":" + parameter.name, parameter.unit);
+    requested.values[k] = parameter_value(value, info.parameters[k], info.key + ":" + name);
   }
   return requested;
-}
-
-Law read_law(const std::string& name) {
-  try {
-    return make_law(name);
-  } catch (const InputError& error) {
-    throw UsageError(error.what());
-  }
 }
 
 /// Effects with their values by key: the model puts them into its own order.
@@ -79,17 +62,15 @@ struct RequestedEffects {
 
 RequestedEffects requested_effects(const MachineRequest& request, const Law& law) {
   RequestedEffects out;
-  for (const std::string& text : request.effects) {
-    const RequestedEffect requested = read_effect(text);
-    out.effects.push_back(requested.effect);
-    out.values[describe(requested.effect).key] = requested.values;
-  }
+  const auto add = [&](RequestedEffect requested) {
+    out.values[describe(requested.effect).key] = std::move(requested.values);
+    out.effects.push_back(std::move(requested.effect));
+  };
+  for (const std::string& text : request.effects) add(read_effect(text));
   for (const std::string& text : request.formulas) {
-    const Formula formula(text);
-    const EffectInfo info = formula.info();
-    out.effects.emplace_back(formula);
-    out.values[info.key] = {};  // it may have no parameters
-    for (const Parameter& parameter : info.parameters) out.values[info.key].push_back(parameter.start * parameter.si);
+    RequestedEffect formula{Effect(Formula(text)), {}};
+    for (const Parameter& p : describe(formula.effect).parameters) formula.values.push_back(p.start * p.si);
+    add(std::move(formula));
   }
   refuse_clashes(out.effects, {law});
   return out;
@@ -110,15 +91,13 @@ void set_law_parameters(const MachineRequest& request, const Law& law, std::vect
         std::find_if(parameters.begin(), parameters.end(),
                      [&, &wanted = name](const Parameter& parameter) { return parameter.name == wanted; });
     if (found == parameters.end()) {
-      std::string list;
-      for (const Parameter& known : parameters) list += (list.empty() ? "" : ", ") + flag_of(known.name);
+      std::vector<std::string> flags;
+      for (const Parameter& known : parameters) flags.push_back(flag_of(known.name));
       throw InputError("the law '" + std::string(to_string(law)) + "' has no parameter " + name +
                            ", which was given as " + flag_of(name),
-                       "it takes " + list);
+                       "it takes " + listed(flags));
     }
-    const Unit unit = find_unit(found->unit).value_or(Unit{Quantity::dimensionless, 1, 0});
-    p[static_cast<std::size_t>(found - parameters.begin())] =
-        stated_value(text, unit.quantity, flag_of(name), found->unit == "1" ? "" : found->unit);
+    p[static_cast<std::size_t>(found - parameters.begin())] = parameter_value(text, *found, flag_of(name));
   }
 }
 
@@ -145,10 +124,8 @@ void set_rig(const MachineRequest& request, Rig& rig) {
 using namespace tribofit;
 
 bool is_linear_speed(const std::string& text) {
-  const std::size_t end = text.find_last_of("0123456789.");
-  const std::string unit = end == std::string::npos ? "" : text.substr(end + 1);
-  const std::optional<Unit> known = find_unit(unit);
-  return !unit.empty() && known && known->quantity == Quantity::velocity;
+  const std::string unit = unit_of(text);
+  return !unit.empty() && find_unit(unit, Quantity::velocity);
 }
 
 double disc_speed_from(const std::string& text, double radius, const std::string& option) {
@@ -157,15 +134,14 @@ double disc_speed_from(const std::string& text, double radius, const std::string
 }
 
 RequestedMachine machine_from(const MachineRequest& request) {
-  const Law law = request.law.empty() ? law_catalogue().front() : read_law(request.law);
-  const double radius = stated_value(request.radius, Quantity::length, "--radius", "mm");
+  const Law law = request.law.empty() ? law_catalogue().front() : law_named(request.law);
+  const double radius = positive_value(request.radius, Quantity::length, "--radius", "mm");
   const PublishedTest test = published_test(radius, law);
   RequestedMachine out;
   out.preset_radius = test.radius;
   Machine& machine = out.machine;
   machine.radius = radius;
   machine.load = given_or(request.load, Quantity::force, "--load", "N", test.load);
-  if (!(radius > 0)) throw InputError("--radius: '" + request.radius + "' is not greater than zero", "give it as 15mm");
   machine.speed = request.speed.empty() ? test.speed : disc_speed_from(request.speed, radius, "--speed");
   if (machine.speed == 0) {
     throw InputError("--speed: '" + request.speed + "' is zero: the disc stands still", "give it as e.g. 4rpm");
@@ -194,7 +170,7 @@ namespace {
 constexpr const char* kRigGroup = "Rig (default: the published test of the nearest radius, 4 rpm, 50 N)";
 
 /// An option for every parameter that a law of the list has.
-void add_law_parameters(const Command& verb, const char* group, MachineRequest& r) {
+void add_law_parameters(const Command& group, MachineRequest& r) {
   std::vector<Parameter> parameters;
   std::map<std::string, std::string> laws;  // that have it
   for (const Law& law : law_catalogue()) {
@@ -208,35 +184,31 @@ void add_law_parameters(const Command& verb, const char* group, MachineRequest& 
     const std::string unit = p.unit == "1" ? "" : " [" + p.unit + "]";
     std::string help = p.description + unit + " (" + laws[p.name] + ")";
     help[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(help[0])));
-    verb.add_option(flag_of(p.name), r.law_parameters[p.name], help).group(group);
+    group.add_option(flag_of(p.name), r.law_parameters[p.name], help);
   }
 }
 
 }  // namespace
 
 void add_machine_options(const Command& verb, MachineRequest& r) {
-  verb.add_option("--radius", r.radius, "Friction radius").show_default().group(kRigGroup);
-  verb.add_option("--speed", r.speed, "Speed of the disc, e.g. 4rpm, or under the block, e.g. 6mm/s").group(kRigGroup);
-  verb.add_option("--load", r.load, "Normal force, e.g. 50N").group(kRigGroup);
+  const Command rig = verb.in(kRigGroup);
+  rig.add_option("--radius", r.radius, "Friction radius").show_default();
+  rig.add_option("--speed", r.speed, "Speed of the disc, e.g. 4rpm, or under the block, e.g. 6mm/s");
+  rig.add_option("--load", r.load, "Normal force, e.g. 50N");
   add_machine_numbers(verb, r);
 }
 
 void add_machine_numbers(const Command& verb, MachineRequest& r) {
-  const auto group = [&verb](const char* name, const char* flag, auto& value, const std::string& help) {
-    return verb.add_option(flag, value, help).group(name);
-  };
-  const char* rig = kRigGroup;
-  group(rig, "--mass", r.mass, "Moving mass, e.g. 0.85kg");
-  group(rig, "--stiffness", r.stiffness, "Stiffness of the spring, e.g. 16.2N/mm");
-  group(rig, "--damping", r.damping, "Damping of the block on its spring, e.g. 0.0047Ns/mm");
-  group(rig, "--damping-ratio", r.damping_ratio, "Damping as c/(2 sqrt(k m)), e.g. 0.02");
-  const char* law = "Friction (default: the published values at the nearest radius)";
-  group(law, "--law", r.law, "Law of friction: " + list_of_laws() + " (default the first)");
-  add_law_parameters(verb, law, r);
-  group(law, "--effect", r.effects,
-        "KEY:name=value,... or KEY:FORM,name=value,... (repeatable; `identify effects` lists them)")
-      .one_value_each();
-  group(law, "--formula", r.formulas,
-        "A term of your own, e.g. 'hump = a*exp(-((v-v0)/w)^2); a=0.02, v0=25mm/s, w=6mm/s'")
-      .one_value_each();
+  const Command rig = verb.in(kRigGroup);
+  rig.add_option("--mass", r.mass, "Moving mass, e.g. 0.85kg");
+  rig.add_option("--stiffness", r.stiffness, "Stiffness of the spring, e.g. 16.2N/mm");
+  rig.add_option("--damping", r.damping, "Damping of the block on its spring, e.g. 0.0047Ns/mm");
+  rig.add_option("--damping-ratio", r.damping_ratio, "Damping as c/(2 sqrt(k m)), e.g. 0.02");
+  const Command law = verb.in("Friction (default: the published values at the nearest radius)");
+  law.add_option("--law", r.law, "Law of friction: " + list_of_laws() + " (default the first)");
+  add_law_parameters(law, r);
+  law.add_option("--effect", r.effects,
+                 "KEY:name=value,... or KEY:FORM,name=value,... (repeatable; `identify effects` lists them)");
+  law.add_option("--formula", r.formulas,
+                 "A term of your own, e.g. 'hump = a*exp(-((v-v0)/w)^2); a=0.02, v0=25mm/s, w=6mm/s'");
 }

@@ -57,7 +57,6 @@ void add_manifest(const Command& app) {
   verb.add_option("--out", wanted->out, "Write it here (default: standard output)");
   verb.add_flag("--force", wanted->force, "Overwrite the file that is there");
   verb.on_run([wanted, verb] {
-    verb.refuse_empty_values();
     write_draft(*wanted);
     return ExitStatus::done;
   });

@@ -7,7 +7,6 @@
 
 #include "batch.hpp"
 #include "console.hpp"
-#include "options.hpp"
 #include "results.hpp"
 #include "summary.hpp"
 #include "tribofit/campaign/run_result.hpp"
@@ -66,9 +65,8 @@ void add_merge(const Command& app) {
   add_pooling_options(verb, *settings);
   add_compare_option(verb, *settings);
   add_report_option(verb, *settings);
-  verb.add_flag("--quiet", settings->quiet, "Do not print the table").group(section::kOutput);
+  verb.in(section::kOutput).add_flag("--quiet", settings->quiet, "Do not print the table");
   verb.on_run([settings, folder, verb] {
-    verb.refuse_empty_values();
     std::vector<std::string> arguments = pooling_arguments(*settings);
     arguments.insert(arguments.begin(), "merge");
     return merge(*settings, *folder, {arguments, {as_folder(*folder)}});

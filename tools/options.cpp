@@ -1,142 +1,231 @@
-#include "options.hpp"
+#include <algorithm>
+#include <array>
 
-#include "parameter_options.hpp"
-#include "stated_value.hpp"
+#include "settings.hpp"
 #include "tribofit/fit/rate_state.hpp"
+#include "tribofit/ingest/file_names.hpp"
+#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/record_kind.hpp"
+#include "tribofit/ingest/spelling.hpp"
+#include "typed_values.hpp"
+
+using namespace tribofit;
+
+namespace {
+
+/// "time=t,mu=COF": a comma separates only where a channel and "=" follow, so that columns may hold commas themselves.
+void add_pairs(const std::string& text, const std::string& option, std::map<std::string, std::string>& pairs) {
+  static const std::vector<std::string> channels(kChannelNames.begin(), kChannelNames.end());
+  const bool is_unit = option.ends_with("units");  // of a channel, or of a column by its name in the file
+  std::vector<std::string> items;
+  for (const std::string& part : split(text, ',')) {
+    if (part.find('=') != std::string::npos || items.empty()) {
+      items.push_back(part);
+    } else {
+      items.back() += "," + part;
+    }
+  }
+  for (const std::string& item : items) {
+    const std::size_t equals = item.find('=');
+    const std::string channel = item.substr(0, equals);
+    if (equals == std::string::npos || equals + 1 == item.size()) {
+      throw InputError(option + ": '" + item + "' is not " + (is_unit ? "NAME=UNIT" : "CHANNEL=COLUMN"),
+                       is_unit ? "write it as v_b=mm/s, or by the column's name as Velocity=mm/s"
+                               : "write it as v_b=Velocity or v_b=Velocity:mm/s");
+    }
+    if (!is_unit && std::find(channels.begin(), channels.end(), channel) == channels.end()) {
+      throw InputError(option + ": there is no channel '" + channel + "'",
+                       "did you mean '" + nearest_name(channel, channels) + "'? The channels are " + listed(channels));
+    }
+    if (!pairs.emplace(channel, item.substr(equals + 1)).second) {
+      throw InputError(option + ": '" + channel + "' is given twice", "give it once");
+    }
+  }
+}
+
+}  // namespace
 
 void add_input_options(const Command& app, Settings& s) {
-  app.add_option("TRACE", s.traces, "Traces (text, MATLAB, UFF, TDMS), or folders of them");
-  app.add_option("--radius", s.radius, "Friction radius, 15mm; one per step as 6mm,9mm,12mm")
-      .group(section::kConditions);
-  app.add_option("--speed", s.speed,
-                 "Disc speed, 4rpm, or at --radius, 1.1mm/s (else from the file or the stick plateau); of a load point "
-                 "by time, 0s:2um/s,60s:10um/s")
-      .group(section::kConditions);
-  app.add_option("--load", s.load, "Normal force, 50N").group(section::kConditions);
-  app.add_option("--instruments", s.instruments, "Known values of the instruments (JSON), with uncertainties")
-      .group(section::kConditions);
-  const auto input = [&](const char* name, auto& value, const char* help) {
-    return app.add_option(name, value, help).group(section::kReading);
+  ReadOptions& read = s.identify.read;
+  const auto pairs = [](const Command& in, const char* name, auto& out, const char* help) {
+    in.add_each(
+        name, [name, &out](const std::string& text) { add_pairs(text, name, out); }, help);
   };
-  input("--columns", s.columns, "Which column is what: time=t,mu=COF,v_b=Velocity:mm/s (see `identify columns`)")
-      .one_value_each();
-  input("--units", s.units, "Units or sensitivities, of a channel or a column by its name: v_b=mm/s").one_value_each();
-  input("--rate", s.rate, "Samples per second where there is no time column, 20kHz");
-  input("--with", s.second_file, "Second file of the same run, from the other instrument");
-  input("--with-columns", s.second_columns, "--columns of the second file: v_b=Velocity:mm/s").one_value_each();
-  input("--with-units", s.second_units, "--units of the second file").one_value_each();
-  input("--continue", s.continued_in, "Further file of the same run (repeatable, in order)").one_value_each();
+  app.add_names("TRACE", s.traces, "Traces (text, MATLAB, UFF, TDMS), or folders of them");
+  const Command conditions = app.in(section::kConditions);
+  conditions.add_option("--radius", s.radius, "Friction radius, 15mm; one per step as 6mm,9mm,12mm");
+  conditions.add_option(
+      "--speed", s.speed,
+      "Disc speed, 4rpm, or at --radius, 1.1mm/s (else from the file or the stick plateau); of a load point "
+      "by time, 0s:2um/s,60s:10um/s");
+  conditions.add_quantity(
+      "--load", Quantity::force,
+      [&](double load) {
+        read.conditions.load = {load, kTyped};
+      },
+      "Normal force, 50N");
+  conditions.add_option("--instruments", s.instruments, "Known values of the instruments (JSON), with uncertainties");
 
-  input("--kind", s.kind,
-        "What was recorded: stick-slip, sliding, points, spring-slider, motion-only, force-only, velocity-steps or "
-        "slide-hold-slide (identify help kinds)")
-      .one_of(tribofit::record_kind_names());
-  app.add_flag("--never-sticks", s.never_sticks, "The same as --kind sliding").group(section::kReading);
-  input("--stick-below", s.stick_below, "Relative speed below which the block sticks, 0.5mm/s (else from the noise)");
-  app.add_flag("--trim,!--no-trim", s.trim, "Exclude the run-up of the disc (default); --no-trim keeps it")
-      .group(section::kReading);
+  const Command reading = app.in(section::kReading);
+  pairs(reading, "--columns", read.columns,
+        "Which column is what: time=t,mu=COF,v_b=Velocity:mm/s (see `identify columns`)");
+  pairs(reading, "--units", read.units, "Units or sensitivities, of a channel or a column by its name: v_b=mm/s");
+  reading.add_quantity(
+      "--rate", Quantity::frequency, [&](double rate) { read.rate = rate; },
+      "Samples per second where there is no time column, 20kHz");
+  reading.add_option("--with", read.second_file, "Second file of the same run, from the other instrument");
+  pairs(reading, "--with-columns", read.second_columns, "--columns of the second file: v_b=Velocity:mm/s");
+  pairs(reading, "--with-units", read.second_units, "--units of the second file");
+  reading.add_option("--continue", read.continued_in, "Further file of the same run (repeatable, in order)");
+  reading
+      .add_read(
+          "--kind", [&](const std::string& name) { read.kind = find_record_kind(name); },
+          "What was recorded: stick-slip, sliding, points, spring-slider, motion-only, force-only, velocity-steps or "
+          "slide-hold-slide (identify help kinds)")
+      .one_of(record_kind_names());
+  reading.add_flag("--never-sticks", s.never_sticks, "The same as --kind sliding");
+  reading.add_quantity(
+      "--stick-below", Quantity::velocity, [&](double speed) { s.identify.motion.stick.below = speed; },
+      "Relative speed below which the block sticks, 0.5mm/s (else from the noise)");
+  reading.add_flag("--trim,!--no-trim", s.identify.motion.trim,
+                   "Exclude the run-up of the disc (default); --no-trim keeps it");
 }
 
 void add_spring_options(const Command& app, Settings& s) {
-  const auto add = [&](const char* name, auto& value, const char* help) {
-    return app.add_option(name, value, help).group("Mass on a spring");
+  SpringDrive& spring = s.identify.read.spring;
+  const Command in = app.in("Mass on a spring");
+  const auto add = [&](const char* name, Quantity quantity, Condition& condition, const char* help) {
+    in.add_quantity(
+        name, quantity,
+        [&condition](double value) {
+          condition = {value, kTyped};
+        },
+        help);
   };
-  add("--stiffness", s.stiffness,
+  add("--stiffness", Quantity::stiffness, spring.stiffness,
       "Of the spring, where its pull, or the motion of the mass on it, is all that was recorded, 168N/m");
-  add("--mass", s.mass,
+  add("--mass", Quantity::mass, spring.mass,
       "That the spring pulls, 30.7g: its inertia is taken off the pull (else sensor-inertia finds it)");
-  add("--damping", s.damping, "Beside the spring, 0.67Ns/m, where the motion alone was recorded (x_b, x_d)");
-  add("--rubs-on", s.rubs_on, "What the mass rubs on there: ground or base (else as the motion shows it)")
-      .one_of({"ground", "base"});
+  add("--damping", Quantity::damping, spring.damping,
+      "Beside the spring, 0.67Ns/m, where the motion alone was recorded (x_b, x_d)");
+  in.add_choice<std::optional<Counterface>>(
+      "--rubs-on", spring.counterface, {{"ground", Counterface::ground}, {"base", Counterface::base}},
+      "What the mass rubs on there: ground or base (else as the motion shows it)");
 }
 
 void add_driven_options(const Command& app, Settings& s) {
-  const auto add = [&](const char* name, auto& value, const char* help) {
-    return app.add_option(name, value, help).group("Velocity steps and holds");
-  };
-  add("--evolution", s.evolutions, "Law of the state, ageing or slip (repeatable; default both)")
-      .one_of(tribofit::state_evolution_names())
-      .one_value_each();
-  add("--states", s.states, "State variables, 1 or 2 (default: 2 where they describe the steps better)").range(1, 2);
-  add("--detrend", s.detrend,
-      "Line that is taken off each step, over displacement or time, auto (default: the better one) or none")
-      .one_of(tribofit::detrend_names());
-  add("--reference-speed", s.reference_speed, "v0, 1um/s (default: the speed before the first step)");
-  add("--from", s.from, "Nothing before this time is used, 120s");
-  add("--to", s.to, "Nothing after this time is used, 900s");
+  RateStateOptions& driven = s.identify.rate_state;
+  const Command in = app.in("Velocity steps and holds");
+  in.add_each(
+        "--evolution",
+        [&driven, is_first = true](const std::string& name) mutable {
+          if (is_first) driven.evolutions.clear();
+          is_first = false;
+          const StateEvolution evolution = *find_state_evolution(name);
+          std::erase(driven.evolutions, evolution);
+          driven.evolutions.push_back(evolution);
+        },
+        "Law of the state, ageing or slip (repeatable; default both)")
+      .one_of(state_evolution_names());
+  in.add_option("--states", s.states, "State variables, 1 or 2 (default: 2 where they describe the steps better)")
+      .range(1, 2);
+  in.add_read(
+        "--detrend", [&](const std::string& name) { driven.detrend = *find_detrend(name); },
+        "Line that is taken off each step, over displacement or time, auto (default: the better one) or none")
+      .one_of(detrend_names());
+  in.add_read(
+      "--reference-speed", [&](const std::string& text) { driven.reference_speed = reference_speed_from(text); },
+      "v0, 1um/s (default: the speed before the first step)");
+  in.add_read(
+      "--from", [&](const std::string& text) { driven.from = stated_value(text, Quantity::time, "--from", "s"); },
+      "Nothing before this time is used, 120s");
+  in.add_read(
+      "--to", [&](const std::string& text) { driven.to = stated_value(text, Quantity::time, "--to", "s"); },
+      "Nothing after this time is used, 900s");
 }
 
 void add_model_options(const Command& app, Settings& s) {
-  const auto fit = [&](const char* name, auto& value, const std::string& help) {
-    return app.add_option(name, value, help).group("Law and fit");
-  };
-  fit("--law", s.laws, list_of_laws() + " (repeatable; default the first two)")
-      .one_of(tribofit::law_keys())
-      .one_value_each();
-  fit("--effect", s.effects, "Effect to add to every law, KEY or KEY:FORM (repeatable; see `identify effects`)")
-      .one_value_each();
-  fit("--formula", s.formulas,
-      "Effect of your own: 'name = a*exp(-v/w); a=0.02, w=6mm/s', or @FILE with one a line (repeatable)")
-      .one_value_each();
-  fit("--loss", s.loss, "squares (default), huber or soft-l1").one_of({"squares", "huber", "soft-l1"});
-  fit("--starts", s.starts, "Starting points of the search (default 5)").range(1, 1000);
-  fit("--folds", s.folds, "Blocks of cycles held out in turn (default 5)").range(2, 1000);
-  fit("--seed", s.seed_text, "Seed of the random starts (default 1)");
+  FitOptions& fit = s.identify.fit;
+  const Command in = app.in(section::kFit);
+  in.add_each(
+        "--law",
+        [&laws = s.identify.laws, is_first = true](const std::string& name) mutable {
+          if (is_first) laws.clear();
+          is_first = false;
+          const Law law = make_law(name);
+          if (std::find(laws.begin(), laws.end(), law) == laws.end()) laws.push_back(law);
+        },
+        list_of_laws() + " (repeatable; default the first two)")
+      .one_of(law_keys());
+  in.add_option("--effect", s.effects,
+                "Effect to add to every law, KEY or KEY:FORM (repeatable; see `identify effects`)");
+  in.add_option("--formula", s.formulas,
+                "Effect of your own: 'name = a*exp(-v/w); a=0.02, w=6mm/s', or @FILE with one a line (repeatable)");
+  in.add_choice<Loss>("--loss", fit.loss,
+                      {{"squares", Loss::squares}, {"huber", Loss::huber}, {"soft-l1", Loss::soft_l1}},
+                      "squares (default), huber or soft-l1");
+  in.add_option("--starts", fit.starts, "Starting points of the search (default 5)").range(1, 1000);
+  in.add_option("--folds", fit.folds, "Blocks of cycles held out in turn (default 5)").range(2, 1000);
+  in.add_read(
+      "--seed", [&](const std::string& text) { fit.seed = stated_seed(text); },
+      "Seed of the random starts (default 1)");
 }
 
 void add_selection_options(const Command& app, Settings& s) {
-  app.add_option("--cycles", s.cycles, "Fit these cycles only, FIRST..LAST (numbers as in cycles.csv, from 0)")
-      .group("Law and fit");
-  app.add_option("--exclude", s.excluded, "Exclude cycles that reach into this time: 2.5s..3.1s (repeatable)")
-      .one_value_each()
-      .group("Law and fit");
+  Selection& selection = s.identify.selection;
+  const Command in = app.in(section::kFit);
+  in.add_read(
+      "--cycles", [&](const std::string& text) { selection.cycles = cycles_from(text); },
+      "Fit these cycles only, FIRST..LAST (numbers as in cycles.csv, from 0)");
+  in.add_each(
+      "--exclude", [&](const std::string& text) { selection.excluded.push_back(stretch_from(text)); },
+      "Exclude cycles that reach into this time: 2.5s..3.1s (repeatable)");
 }
 
 void add_parameter_options(const Command& app, Settings& s) {
-  const auto add = [&](const char* name, auto& value, const char* help) {
-    app.add_option(name, value, help).one_value_each().group("Law and fit");
-  };
-  add("--start", s.start_values, "Where the search begins: mu_s=0.5,frictional-lag.tau=2ms (repeatable)");
-  add("--bounds", s.bounds, "Bounds of a parameter: alpha=0.01..0.2s/mm; equal ones hold it (repeatable)");
+  const Command in = app.in(section::kFit);
+  in.add_option("--start", s.start_values, "Where the search begins: mu_s=0.5,frictional-lag.tau=2ms (repeatable)");
+  in.add_option("--bounds", s.bounds, "Bounds of a parameter: alpha=0.01..0.2s/mm; equal ones hold it (repeatable)");
+}
+
+void add_threads_option(const Command& app, Settings& s) {
+  app.add_option("--threads", s.identify.threads, "Threads (default: all; the result is the same)").range(0, 1024);
 }
 
 void add_result_options(const Command& app, Settings& s) {
-  app.add_option("--json", s.json, "Write the result as JSON ('-': to standard output, without the table)")
-      .group(section::kOutput);
-  app.add_option("--threads", s.threads, "Threads (default: all; the result is the same)")
-      .range(0, 1024)
-      .group(section::kOutput);
-  app.add_flag("--quiet", s.quiet, "Do not print the table").group(section::kOutput);
+  const Command in = app.in(section::kOutput);
+  in.add_option("--json", s.json, "Write the result as JSON ('-': to standard output, without the table)");
+  add_threads_option(in, s);
+  in.add_flag("--quiet", s.quiet, "Do not print the table");
 }
 
 void add_output_options(const Command& app, Settings& s) {
   add_result_options(app, s);
-  app.add_option("--csv", s.csv, "Write samples, cycles, curves and errors into this folder").group(section::kOutput);
+  app.in(section::kOutput).add_option("--csv", s.csv, "Write samples, cycles, curves and errors into this folder");
 }
 
 void add_report_option(const Command& app, Settings& s) {
-  app.add_option("--report", s.report, "Write a page of charts that opens in any browser (FILE.html)")
-      .group(section::kOutput);
-  app.add_option("--figures", s.figures, "Write a picture of each chart into this folder, 85 mm wide, for a paper")
-      .group(section::kOutput);
-  app.add_option("--format", s.picture_format, "Of --figures: svg (default), pdf or png")
-      .one_of({"svg", "pdf", "png"})
-      .group(section::kOutput);
+  const Command in = app.in(section::kOutput);
+  in.add_option("--report", s.report, "Write a page of charts that opens in any browser (FILE.html)");
+  in.add_option("--figures", s.figures, "Write a picture of each chart into this folder, 85 mm wide, for a paper");
+  in.add_choice<std::optional<PictureFormat>>(
+      "--format", s.picture_format,
+      {{"svg", PictureFormat::svg}, {"pdf", PictureFormat::pdf}, {"png", PictureFormat::png}},
+      "Of --figures: svg (default), pdf or png");
 }
 
 void add_pooling_options(const Command& app, Settings& s) {
-  const auto add = [&](const char* name, auto& value, const char* help) {
-    app.add_option(name, value, help).one_value_each().group(section::kTogether);
-  };
-  add("--share", s.share, "Parameter common to all runs: --share alpha (repeatable)");
-  add("--vary", s.vary, "Parameter with one value for each value of a condition: --vary mu_s:radius (repeatable)");
+  const Command in = app.in(section::kTogether);
+  in.add_option("--share", s.share, "Parameter common to all runs: --share alpha (repeatable)");
+  in.add_option("--vary", s.vary,
+                "Parameter with one value for each value of a condition: --vary mu_s:radius (repeatable)");
 }
 
 void add_compare_option(const Command& app, Settings& s) {
-  app.add_option("--compare", s.compare,
-                 "Compare pooled values with published or earlier ones: a table such as data/published/table4.csv")
-      .group(section::kBatch);
+  app.in(section::kBatch)
+      .add_option("--compare", s.compare,
+                  "Compare pooled values with published or earlier ones: a table such as data/published/table4.csv");
 }
 
 std::vector<std::string> pooling_arguments(const Settings& s) {
@@ -145,9 +234,4 @@ std::vector<std::string> pooling_arguments(const Settings& s) {
   for (const std::string& text : s.vary) arguments.insert(arguments.end(), {"--vary", text});
   if (!s.compare.empty()) arguments.insert(arguments.end(), {"--compare", s.compare});
   return arguments;
-}
-
-void check_seed(Settings& s) {
-  if (s.seed_text.empty()) return;
-  s.seed = stated_seed(s.seed_text);
 }

@@ -5,12 +5,10 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis_options.hpp"
 #include "console.hpp"
 #include "diagnosed_runs.hpp"
 #include "inputs.hpp"
 #include "means_options.hpp"
-#include "options.hpp"
 #include "results.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/report/plan.hpp"
@@ -32,23 +30,17 @@ constexpr const char* kPlanFooter =
 
 ExitStatus run_plan(const Settings& s, const MeansOptions& typed, const std::vector<std::string>& arguments) {
   const IdentifyOptions options = options_from(s);
-  if (s.traces.empty())
-    throw UsageError("no trace given; try `identify plan --radius 15mm --speeds 1rpm..8rpm trace.csv`");
   PlanOptions more;
   more.means = means_from(typed, s.radius);
   LeftOut left_out;
-  Split split = usable_runs(s, options, left_out);
-  for (const std::string& reason : left_out.reasons) print_error("left out: " + reason);
-  if (split.diagnosed.empty()) {
-    print_error("no record is left to plan from");
-    return left_out.any_read ? ExitStatus::failed : ExitStatus::bad_input;
-  }
+  Split split = usable_runs(s, options, "plan", left_out);
+  if (split.diagnosed.empty()) return left_out.any_read ? ExitStatus::failed : ExitStatus::bad_input;
   // What repeats a run is evidence here: nothing is held back.
   split.diagnosed.insert(split.diagnosed.end(), split.kept.begin(), split.kept.end());
   split.kept.clear();
   split.notes.clear();
   more.threads = options.threads;
-  more.seed = s.seed;
+  more.seed = options.fit.seed;
   more.instruments = options.instruments;
   more.fit = options.fit;
   more.laws = options.laws;
@@ -58,7 +50,7 @@ ExitStatus run_plan(const Settings& s, const MeansOptions& typed, const std::vec
   {
     ProgressLine line;
     DiagnoseOptions diagnosis;
-    diagnosis.diagnosis.threads = s.threads;
+    diagnosis.diagnosis.threads = options.threads;
     diagnosis.diagnosis.until = more.until;
     diagnosis.diagnosis.progress = [&line](std::string_view what, double part) { line.show(what, 0.3 * part); };
     more.progress = [&line](std::string_view what, double part) { line.show(what, 0.3 + 0.7 * part); };
@@ -66,13 +58,9 @@ ExitStatus run_plan(const Settings& s, const MeansOptions& typed, const std::vec
     if (diagnosed.analysed) plan = plan_runs(diagnosed, more);
   }
   add_remarks(split, diagnosed);
-  const bool alone = split.diagnosed.size() == 1;
-  const std::vector<std::string> own = alone ? arguments_for(split.diagnosed.front(), arguments) : arguments;
-  const std::vector<std::string> inputs = alone ? std::vector{split.diagnosed.front().trace.path} : s.traces;
-  TerminalOptions terminal = terminal_options(s, own);
-  terminal.inputs = inputs;
+  const TerminalOptions shown = shown_as(split, s, arguments);
   if (!diagnosed.analysed) plan.reason = reason_of(diagnosed);
-  deliver(s, {[&] { return plan_report(diagnosed, plan, terminal); },
+  deliver(s, {[&] { return plan_report(diagnosed, plan, shown); },
               [&] { return plan_json(diagnosed, plan, {arguments}); }});
   if (plan.answered()) return left_out.reasons.empty() ? ExitStatus::done : ExitStatus::failed;
   print_error("nothing could be planned: " + plan.reason);
@@ -88,17 +76,13 @@ void add_plan(const Command& app) {
   const auto means = std::make_shared<MeansOptions>();
   add_input_options(verb, *settings);
   add_means_options(verb, *means);
-  verb.add_option("--time-limit", settings->time_limit,
-                  "Simulate no more runs after this time (10s, 2min) and report what is known")
-      .group(section::kMeans);
+  verb.in(section::kMeans)
+      .add_option("--time-limit", settings->time_limit,
+                  "Simulate no more runs after this time (10s, 2min) and report what is known");
   add_model_options(verb, *settings);
   add_parameter_options(verb, *settings);
   add_selection_options(verb, *settings);
   add_result_options(verb, *settings);
   add_report_option(verb, *settings);
-  verb.on_run([settings, means, verb] {
-    verb.refuse_empty_values();
-    check_seed(*settings);
-    return run_plan(*settings, *means, verb.own_options());
-  });
+  verb.on_run([settings, means, verb] { return run_plan(*settings, *means, verb.own_options()); });
 }

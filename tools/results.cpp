@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <system_error>
 
-#include "analysis_options.hpp"
 #include "console.hpp"
 #include "exit_status.hpp"
 #include "tribofit/ingest/output_tables.hpp"
@@ -19,8 +18,7 @@ using namespace tribofit;
 namespace {
 
 PictureFormat picture_format(const Settings& s) {
-  if (s.picture_format == "pdf") return PictureFormat::pdf;
-  return s.picture_format == "png" ? PictureFormat::png : PictureFormat::svg;
+  return s.picture_format.value_or(PictureFormat::svg);
 }
 
 /// Usage error: a page that this build cannot write, or one onto another output.
@@ -37,14 +35,14 @@ void check_report(const Settings& s) {
 /// Usage error: pictures that cannot be drawn here, or whose folder is another output.
 void check_figures(const Settings& s) {
   if (s.figures.empty()) {
-    if (!s.picture_format.empty()) throw UsageError("--format needs --figures FOLDER");
+    if (s.picture_format) throw UsageError("--format needs --figures FOLDER");
     return;
   }
   if (s.figures == s.json || s.figures == s.report) {
     throw UsageError("--figures is a folder; name another than the file of --json or --report");
   }
   if (!can_write_pictures(picture_format(s))) {
-    throw UsageError("--format " + s.picture_format +
+    throw UsageError("--format " + name_of(picture_format(s)) +
                      ": this build leaves it out; use --format svg, or build where librsvg is "
                      "installed (scripts/setup figures)");
   }

@@ -2,10 +2,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis_options.hpp"
 #include "console.hpp"
 #include "inputs.hpp"
-#include "options.hpp"
 #include "results.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/pipeline.hpp"
@@ -26,14 +24,13 @@ constexpr const char* kRigFooter =
     "  identify rig --radius 15mm --load 50N trace.csv\n"
     "  identify rig --radius 15mm --load 50N --instruments lab.json --json rig.json trace.csv";
 
-ExitStatus run_rig(const Settings& s, const std::vector<std::string>& arguments) {
+ExitStatus run_rig(const Settings& s, bool keep_high_pass, const std::vector<std::string>& arguments) {
   IdentifyOptions options = options_from(s);
-  options.motion.undo_high_pass = !s.keep_high_pass;
+  options.motion.undo_high_pass = !keep_high_pass;
   const Input input = only_input(s, options.read, "rig");
   RigIdentification result = identify_rig(input.trace, options);
   Identification& trace = result.trace;
-  trace.notes.insert(trace.notes.end(), input.notes.begin(), input.notes.end());
-  trace.warnings.insert(trace.warnings.begin(), input.warnings.begin(), input.warnings.end());
+  add_remarks(input, trace);
   deliver(s, {[&] { return report_of(result, terminal_options(s, arguments_for(input, arguments))); },
               [&] { return to_json(result, {arguments}); }});
   if (result.rig.determined) return ExitStatus::done;
@@ -47,14 +44,12 @@ void add_rig(const Command& app) {
   const Command verb = app.add_verb("rig", "Mass, damping and stiffness of the rig behind a trace");
   verb.footer(kRigFooter);
   const auto settings = std::make_shared<Settings>();
+  const auto keep = std::make_shared<bool>(false);
   add_input_options(verb, *settings);
-  verb.add_flag("--keep-high-pass", settings->keep_high_pass,
-                "Do not undo a high-pass found on the velocity (one that is declared is undone)")
-      .group(section::kReading);
+  verb.in(section::kReading)
+      .add_flag("--keep-high-pass", *keep,
+                "Do not undo a high-pass found on the velocity (one that is declared is undone)");
   add_result_options(verb, *settings);
   add_report_option(verb, *settings);
-  verb.on_run([settings, verb] {
-    verb.refuse_empty_values();
-    return run_rig(*settings, verb.own_options());
-  });
+  verb.on_run([settings, keep, verb] { return run_rig(*settings, *keep, verb.own_options()); });
 }

@@ -1,44 +1,112 @@
 #pragma once
 
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
-/// What a user types after `identify`, as typed.
+#include "command.hpp"
+#include "tribofit/fit/identification.hpp"
+#include "tribofit/report/pictures.hpp"
+#include "tribofit/report/terminal.hpp"
+
+/// What a user types after `identify`: read into the options of the library where it means the same whatever else is
+/// typed, as a text where it does not (options_from).
 struct Settings {
   std::vector<std::string> traces;
-  std::string radius, speed, load, rate, instruments;
-  std::vector<std::string> columns, units;
-  std::string second_file;
-  std::vector<std::string> second_columns, second_units;
-  std::vector<std::string> continued_in;
-  std::vector<std::string> confirm;     // diagnose: runs held back
-  std::string time_limit;               // diagnose
-  std::string kind;                     // of the record; empty: found
-  std::vector<std::string> evolutions;  // of velocity steps and holds
-  std::string detrend, reference_speed, from, to;
-  int states = 0;
-  std::string stiffness, mass, damping, rubs_on;  // of a mass on a spring
-  bool trim = true;
+  tribofit::IdentifyOptions identify;
+  std::string radius, speed, instruments;
   bool never_sticks = false;
-  std::string stick_below;
-  bool keep_high_pass = false;  // rig: do not undo one found on the velocity
-
-  std::vector<std::string> laws, effects, formulas;
-  std::string protocol = "both", loss = "squares";
-  int starts = 5, folds = 5;
-  bool profile = false;
+  int states = 0;  // of velocity steps; 0: found
+  std::string protocol = "both";
+  std::vector<std::string> effects, formulas;     // of the user, by name; @FILE
   std::vector<std::string> start_values, bounds;  // of parameters by name
-  std::string cycles;                             // to fit
-  std::vector<std::string> excluded;              // stretches of time
+  std::vector<std::string> confirm;               // diagnose: runs held back
+  std::string time_limit;                         // diagnose, plan
 
-  std::string json, csv, report;
-  std::string figures, picture_format;  // folder, and "svg" where the other is empty
-  std::string out, shard, pattern;      // a batch
-  std::string compare;                  // table of earlier values
+  std::string json, csv, report, figures;
+  std::optional<tribofit::PictureFormat> picture_format;  // SVG where there is none
+  std::string out, shard, pattern;                        // a batch
+  std::string compare;                                    // table of earlier values
   bool again = false;
   std::vector<std::string> share, vary;  // parameters common to runs
-  int threads = 0;
-  std::string seed_text;
-  unsigned long long seed = 1;
   bool quiet = false;
 };
+
+/// The options that the verbs share, so that each is spelt, explained and read once.
+
+void add_input_options(const Command& app, Settings& settings);
+/// What draws a slider of which only the pull was recorded.
+void add_spring_options(const Command& app, Settings& settings);
+/// Of a contact whose load point is driven in steps.
+void add_driven_options(const Command& app, Settings& settings);
+/// Laws, effects and how they are fitted.
+void add_model_options(const Command& app, Settings& settings);
+/// Which cycles and stretches of time are fitted; where parameters begin and between which bounds they lie.
+void add_selection_options(const Command& app, Settings& settings);
+void add_parameter_options(const Command& app, Settings& settings);
+void add_threads_option(const Command& app, Settings& settings);
+/// Where the result goes, for verbs that write no tables; with tables as CSV; the page of charts and the pictures.
+void add_result_options(const Command& app, Settings& settings);
+void add_output_options(const Command& app, Settings& settings);
+void add_report_option(const Command& app, Settings& settings);
+/// What several runs have in common, and earlier values.
+void add_pooling_options(const Command& app, Settings& settings);
+void add_compare_option(const Command& app, Settings& settings);
+/// --share, --vary and --compare as typed.
+std::vector<std::string> pooling_arguments(const Settings& settings);
+
+/// All of it together: what depends on several options is read, and contradictions are refused.
+/// Throws UsageError, or tribofit::InputError that names the option.
+tribofit::IdentifyOptions options_from(const Settings& settings);
+
+/// Files that are read besides the traces.
+std::vector<std::string> input_files(const Settings& settings);
+
+/// How to show a result here and now. arguments: what the next command repeats.
+tribofit::TerminalOptions terminal_options(const Settings& settings, const std::vector<std::string>& arguments);
+
+/// The source of conditions that are typed.
+inline constexpr const char* kTyped = "command line";
+
+inline constexpr const char *kStartExample = "NAME=VALUE, as in alpha=0.05s/mm",
+                            *kBoundsExample = "NAME=FROM..TO, as in alpha=0.01..0.2s/mm";
+
+/// The effect or the law of that name. Usage error when there is none, with the nearest known name.
+tribofit::Effect effect_named(const std::string& name);
+tribofit::Law law_named(const std::string& name);
+/// Usage error: two effects are the same, cannot act together, or not on one of the laws.
+void refuse_clashes(const std::vector<tribofit::Effect>& effects, const std::vector<tribofit::Law>& laws);
+/// The keys of all laws, as in "a, b or c".
+std::string list_of_laws();
+
+/// What is typed as --start and --bounds, for the parameters that the laws with these effects have. Usage error where
+/// there is no such parameter, with the nearest one, where a value cannot be read, or where a start lies beyond its
+/// bounds.
+std::vector<tribofit::GivenParameter> given_from(const Settings& settings, const std::vector<tribofit::Law>& laws,
+                                                 const std::vector<tribofit::Effect>& effects);
+/// The entry of that name, made where there is none.
+tribofit::GivenParameter& given_entry(const std::string& name, std::vector<tribofit::GivenParameter>& given);
+/// A value of a parameter of a law or an effect; a bare number is in the unit in which it is shown.
+double parameter_value(const std::string& text, const tribofit::Parameter& parameter, const std::string& option);
+/// What is typed as --cycles, and as one --exclude.
+tribofit::Selection::Cycles cycles_from(const std::string& text);
+tribofit::Selection::Stretch stretch_from(const std::string& text);
+
+/// Whether --speed states those of a load point by time.
+bool names_load_point_speeds(const Settings& settings);
+/// "0s:2um/s,60s:10um/s": speeds from times on. `option`: for messages.
+std::vector<tribofit::LoadPointPhase> phases_from(const std::string& text, const std::string& option);
+/// Speeds of the load point as --speed states them; none where it does not. Usage error: one speed alone.
+std::vector<tribofit::LoadPointPhase> load_point_from(const Settings& settings,
+                                                      std::optional<tribofit::RecordKind> kind);
+/// --reference-speed, v0.
+double reference_speed_from(const std::string& text);
+/// Adds what is typed as --start and --bounds of velocity steps and holds. fitted: values given of the laws, whose
+/// names are theirs where --kind and --speed leave the kind to the file.
+void read_driven(const Settings& settings, const std::vector<tribofit::GivenParameter>& fitted,
+                 tribofit::RateStateOptions& options);
+/// Whether --start or --bounds may name it: for such a record, which --kind, --speed or the file says it is.
+bool is_rate_state_parameter(const Settings& settings, const std::string& name);
+/// "a=0.01,b=0.014,D_c=10um,k=0.002/um" by names, SI. Usage error for others.
+std::map<std::string, double> rate_state_values(const std::string& text, const std::string& option);

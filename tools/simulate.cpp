@@ -19,7 +19,6 @@
 #include "machine_options.hpp"
 #include "simulated_drive.hpp"
 #include "simulated_steps.hpp"
-#include "stated_value.hpp"
 #include "tribofit/friction/model.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
@@ -28,8 +27,10 @@
 #include "tribofit/oscillator/sensors.hpp"
 #include "tribofit/oscillator/simulate.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/output/whole_file.hpp"
 #include "tribofit/version.hpp"
+#include "typed_values.hpp"
 #include "verbs.hpp"
 
 namespace tribofit {
@@ -38,16 +39,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// The command line as given; empty means: from the published test of the nearest radius.
-struct SimulateRequest {
+struct SimulateRequest : RecordRequest {
   MachineRequest machine;
-  std::string noise_mu = "0", noise_v = "0mm/s", noise_colour = "0", scatter = "0", wander = "0";
+  std::string noise_v = "0mm/s", scatter = "0", wander = "0";
   std::string delay = "0s", mass_below = "0kg", high_pass = "0Hz", force_bandwidth = "0Hz", force_damping = "0.7";
   std::string velocity_gain = "1";
-  std::string duration = "20s", rate = "20kHz", run_up, reversing, speed_steps, load_swing, temperature, out;
+  std::string run_up, reversing, load_swing, temperature;
   std::vector<std::string> pauses;
-  std::string seed_text = "1";
-  std::uint64_t seed = 1;
-  bool quiet = false;
   StepsRequest steps;
 };
 
@@ -105,7 +103,7 @@ Sensors plan_sensors(const SimulateRequest& request) {
           .friction_noise = number(request.noise_mu, "--noise-mu"),
           .velocity_noise = stated_value(request.noise_v, Quantity::velocity, "--noise-v", "mm/s"),
           .noise_colour = number(request.noise_colour, "--noise-colour"),
-          .seed = request.seed};
+          .seed = stated_seed(request.seed_text)};
 }
 
 void refuse_work(const SimulateRequest& request, const SimulationOptions& options, const Rig& rig) {
@@ -118,14 +116,16 @@ void refuse_work(const SimulateRequest& request, const SimulationOptions& option
     throw InputError(what + " is less than two samples", "give a longer duration or a higher rate");
   }
   if (samples > kMost) {
-    throw InputError(fmt::format("{} is {:.3g} samples, more than the {:g} that are simulated", what, samples, kMost),
-                     "give a shorter duration or a lower rate");
+    throw InputError(
+        fmt::format("{} is {} samples, more than the {} that are simulated", what, general(samples, 3), general(kMost)),
+        "give a shorter duration or a lower rate");
   }
   if (periods > kMostPeriods) {
-    throw InputError(fmt::format("--duration {} is {:.3g} natural periods of {:.3g} kg on {:.3g} N/mm, more than the "
-                                 "{:g} that are simulated",
-                                 request.duration, periods, rig.mass, 1e-3 * rig.stiffness, kMostPeriods),
-                     "give a shorter duration");
+    throw InputError(
+        fmt::format("--duration {} is {} natural periods of {} kg on {} N/mm, more than the {} that are simulated",
+                    request.duration, general(periods, 3), general(rig.mass, 3), general(1e-3 * rig.stiffness, 3),
+                    general(kMostPeriods)),
+        "give a shorter duration");
   }
 }
 
@@ -139,7 +139,7 @@ Plan make_plan(const SimulateRequest& request) {
   plan.options = {.duration = stated_value(request.duration, Quantity::time, "--duration", "s"),
                   .rate = stated_value(request.rate, Quantity::frequency, "--rate", "Hz"),
                   .scatter = {number(request.scatter, "--scatter"), number(request.wander, "--wander")},
-                  .seed = request.seed};
+                  .seed = stated_seed(request.seed_text)};
   if (!(plan.options.rate > 0))
     throw InputError("--rate: '" + request.rate + "' is not positive", "give it as e.g. 20kHz");
   refuse_work(request, plan.options, plan.machine.rig);
@@ -254,7 +254,7 @@ Json truth(const SimulateRequest& request, const Plan& plan, const SimulatedMoti
             {"force_damping_ratio", sensors.force_damping},
             {"velocity_gain", sensors.velocity_gain},
             {"velocity_high_pass_hz", sensors.velocity_high_pass}}},
-          {"seed", request.seed},
+          {"seed", stated_seed(request.seed_text)},
           {"floor_rmse", floor},
           {"break_aways", motion.break_away_count()},
           {"cycles", cycles_json(plan, motion)}};
@@ -271,57 +271,40 @@ std::string json_path(const std::string& csv) {
   return path;
 }
 
-/// Of a load point that is driven in steps: what is asked of every record, and what of it alone.
-StepsRequest steps_of(const SimulateRequest& request) {
-  if (request.speed_steps.empty())
-    throw InputError("the load point has no speeds", "give --speed-steps 0s:2um/s,60s:10um/s");
-  StepsRequest steps = request.steps;
-  steps.speeds = request.speed_steps;
-  steps.duration = request.duration;
-  steps.rate = request.rate;
-  steps.noise = request.noise_mu;
-  steps.noise_colour = request.noise_colour;
-  steps.out = request.out;
-  steps.seed = request.seed;
-  steps.quiet = request.quiet;
-  return steps;
-}
-
 void run_simulate(const SimulateRequest& request) {
   if (request.out == "-") {
     throw InputError("--out - is not a file", "two files are written, the trace and the truth beside it: give a name");
   }
   const std::string truth_path = json_path(request.out);
-  if (!request.steps.kind.empty()) return simulate_steps(steps_of(request), truth_path);
+  if (!request.steps.kind.empty()) return simulate_steps(request, request.steps, truth_path);
   const Plan plan = make_plan(request);
-  WholeFile trace_file(request.out), truth_file(truth_path);  // before the work, so that a bad name costs nothing
-  const auto [motion, recording, floor] = simulate_recording(plan.machine.model, plan.machine.parameters,
-                                                             plan.machine.rig, plan.drive, plan.options, plan.sensors);
-  write_trace(trace_file, recording.trace, plan);
-  truth_file.write(truth(request, plan, motion, floor).dump(1) + "\n");
-  trace_file.finish();
-  truth_file.finish();
-  trace_file.commit();
-  truth_file.commit();
+  SimulatedMotion motion;
+  double floor = 0;
+  write_record(request.out, truth_path, [&](WholeFile& file) {
+    SimulatedRecording simulated = simulate_recording(plan.machine.model, plan.machine.parameters, plan.machine.rig,
+                                                      plan.drive, plan.options, plan.sensors);
+    write_trace(file, simulated.recording.trace, plan);
+    motion = std::move(simulated.motion);
+    floor = simulated.floor_rmse;
+    return truth(request, plan, motion, floor).dump(1) + "\n";
+  });
   if (request.quiet) return;
   std::string text = fmt::format("{}: {} samples, {} break-aways, {}\n", request.out, motion.size(),
                                  motion.break_away_count(), plan.machine.model.name());
-  text += fmt::format("{}: the truth; over slip the true law leaves an RMSE of {:.6f}\n", truth_path, floor);
+  text += fmt::format("{}: the truth; over slip the true law leaves an RMSE of {}\n", truth_path, fixed(floor, 6));
   if (plan.sensors.friction_noise == 0 && plan.sensors.velocity_noise == 0 && plan.options.scatter.deviation == 0)
     text += "without noise and scatter; --noise-mu, --noise-v and --scatter add them\n";
   if (std::abs(plan.preset_radius - plan.drive.radius) > 1e-9) {
-    text += fmt::format("values not given are those of the published test at {:g} mm\n", 1e3 * plan.preset_radius);
+    text +=
+        fmt::format("values not given are those of the published test at {} mm\n", general(1e3 * plan.preset_radius));
   }
-  std::string known = fmt::format("--radius {:g}mm", 1e3 * plan.drive.radius);
-  if (plan.drive.speed.constant) known += fmt::format(" --speed {:g}rpm", plan.speed / kRpm);
-  if (plan.machine.model.needs().force) known += fmt::format(" --load {:g}N", plan.drive.mean_load);
+  std::string known = fmt::format("--radius {}mm", general(1e3 * plan.drive.radius));
+  if (plan.drive.speed.constant) known += fmt::format(" --speed {}rpm", general(plan.speed / kRpm));
+  if (plan.machine.model.needs().force) known += fmt::format(" --load {}N", general(plan.drive.mean_load));
   print(text + fmt::format("next: identify {} {}\n", known, request.out));
 }
 
 void add_options(const Command& verb, SimulateRequest& r) {
-  const auto group = [&verb](const char* name, const char* flag, auto& value, const char* help) {
-    return verb.add_option(flag, value, help).group(name);
-  };
   verb.add_option("--out", r.out, "CSV file to write; the truth goes beside it as .json").required();
   verb.add_option("--duration", r.duration, "Duration of the record").show_default();
   verb.add_option("--rate", r.rate, "Samples per second").show_default();
@@ -329,31 +312,34 @@ void add_options(const Command& verb, SimulateRequest& r) {
   verb.add_flag("--quiet", r.quiet, "Print nothing");
   add_machine_options(verb, r.machine);
   add_steps_options(verb, r.steps);
-  const char* rig = "Motion of the disc, load and temperature";
-  group(rig, "--run-up", r.run_up, "Start from standstill and reach the speed in this time; else the start is settled");
-  group(rig, "--reversing", r.reversing,
-        "The disc goes forth and back as a sine of this frequency; --speed is its peak");
-  group(rig, "--speed-steps", r.speed_steps,
-        "Speeds from times on, of the disc 0s:2rpm,10s:4rpm,20s:-4rpm, of a load point 0s:2um/s,60s:10um/s");
-  group(rig, "--pause", r.pauses, "The disc stands still from a time on for some time, e.g. 10s,5s (repeatable)")
-      .one_value_each();
-  group(rig, "--load-swing", r.load_swing,
-        "A sine on the load, with a load channel: amplitude and period, e.g. 10N,7s");
-  group(rig, "--temperature", r.temperature,
-        "Temperature channel: a ramp 20degC..60degC, or a swing between the two 20degC..60degC,15s");
-  const char* law = "Scatter of break-away";
-  group(law, "--scatter", r.scatter, "Standard deviation of mu_s from cycle to cycle").show_default();
-  group(law, "--wander", r.wander, "Correlation of the scatter between neighbouring cycles").show_default();
-  const char* sensors = "Sensors";
-  group(sensors, "--noise-mu", r.noise_mu, "Standard deviation of the noise on mu").show_default();
-  group(sensors, "--noise-v", r.noise_v, "Standard deviation of the noise on v_b").show_default();
-  group(sensors, "--noise-colour", r.noise_colour, "AR(1) coefficient of both noises; 0 is white").show_default();
-  group(sensors, "--delay", r.delay, "Time by which mu is recorded later than v_b").show_default();
-  group(sensors, "--mass-below", r.mass_below, "Mass below the force sensor").show_default();
-  group(sensors, "--force-bandwidth", r.force_bandwidth, "Second-order low-pass on mu; 0: none").show_default();
-  group(sensors, "--force-damping", r.force_damping, "Damping ratio of that low-pass").show_default();
-  group(sensors, "--velocity-gain", r.velocity_gain, "Vibrometer reading over true velocity").show_default();
-  group(sensors, "--high-pass", r.high_pass, "First-order high-pass of the vibrometer; 0: none").show_default();
+  const Command rig = verb.in("Motion of the disc, load and temperature");
+  rig.add_option("--run-up", r.run_up,
+                 "Start from standstill and reach the speed in this time; else the start is settled");
+  rig.add_option("--reversing", r.reversing,
+                 "The disc goes forth and back as a sine of this frequency; --speed is its peak");
+  rig.add_option("--speed-steps", r.speed_steps,
+                 "Speeds from times on, of the disc 0s:2rpm,10s:4rpm,20s:-4rpm, of a load point 0s:2um/s,60s:10um/s");
+  rig.add_option("--pause", r.pauses, "The disc stands still from a time on for some time, e.g. 10s,5s (repeatable)");
+  rig.add_option("--load-swing", r.load_swing,
+                 "A sine on the load, with a load channel: amplitude and period, e.g. 10N,7s");
+  rig.add_option("--temperature", r.temperature,
+                 "Temperature channel: a ramp 20degC..60degC, or a swing between the two 20degC..60degC,15s");
+  const auto with_default = [](const Command& in, const char* flag, std::string& value, const char* help) {
+    in.add_option(flag, value, help).show_default();
+  };
+  const Command law = verb.in("Scatter of break-away");
+  with_default(law, "--scatter", r.scatter, "Standard deviation of mu_s from cycle to cycle");
+  with_default(law, "--wander", r.wander, "Correlation of the scatter between neighbouring cycles");
+  const Command sensors = verb.in("Sensors");
+  with_default(sensors, "--noise-mu", r.noise_mu, "Standard deviation of the noise on mu");
+  with_default(sensors, "--noise-v", r.noise_v, "Standard deviation of the noise on v_b");
+  with_default(sensors, "--noise-colour", r.noise_colour, "AR(1) coefficient of both noises; 0 is white");
+  with_default(sensors, "--delay", r.delay, "Time by which mu is recorded later than v_b");
+  with_default(sensors, "--mass-below", r.mass_below, "Mass below the force sensor");
+  with_default(sensors, "--force-bandwidth", r.force_bandwidth, "Second-order low-pass on mu; 0: none");
+  with_default(sensors, "--force-damping", r.force_damping, "Damping ratio of that low-pass");
+  with_default(sensors, "--velocity-gain", r.velocity_gain, "Vibrometer reading over true velocity");
+  with_default(sensors, "--high-pass", r.high_pass, "First-order high-pass of the vibrometer; 0: none");
 }
 
 }  // namespace
@@ -366,9 +352,8 @@ void add_simulate(const Command& app) {
       "trace.csv");
   auto request = std::make_shared<tribofit::SimulateRequest>();
   tribofit::add_options(verb, *request);
-  verb.on_run([request, verb] {
-    verb.refuse_empty_values();
-    request->seed = stated_seed(request->seed_text);
+  verb.on_run([request] {
+    stated_seed(request->seed_text);
     run_simulate(*request);
     return ExitStatus::done;
   });

@@ -4,26 +4,14 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <string_view>
 #include <utility>
 
-#include "stated_value.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/ingest/units.hpp"
+#include "tribofit/ingest/spelling.hpp"
+#include "typed_values.hpp"
 
 namespace tribofit {
 namespace {
-
-/// "a,b" in two parts; throws InputError where there are not two.
-std::pair<std::string, std::string> two_parts(const std::string& text, std::string_view separator, const char* option,
-                                              const char* example) {
-  const auto at = text.find(separator);
-  if (at == std::string::npos) {
-    throw InputError(std::string(option) + " " + text + " does not have two parts",
-                     "write it as e.g. " + std::string(example));
-  }
-  return {text.substr(0, at), text.substr(at + separator.size())};
-}
 
 /// Mean over the record: what a reader of the record would call N0 or T0.
 double mean_over(const std::function<double(double)>& channel, double duration) {
@@ -37,12 +25,10 @@ double mean_over(const std::function<double(double)>& channel, double duration) 
 
 SpeedProfile stepped_speed_from(const std::string& steps, const std::vector<std::string>& pause_texts, double speed) {
   std::vector<double> times, speeds;
-  for (std::size_t begin = 0; begin < steps.size();) {
-    const std::size_t end = std::min(steps.find(',', begin), steps.size());
-    const auto [time, value] = two_parts(steps.substr(begin, end - begin), ":", "--speed-steps", "0s:2rpm,10s:4rpm");
+  for (const std::string& step : steps.empty() ? std::vector<std::string>() : split(steps, ',')) {
+    const auto [time, value] = two_parts(step, ":", "--speed-steps", "0s:2rpm,10s:4rpm");
     times.push_back(stated_value(time, Quantity::time, "--speed-steps", "s"));
     speeds.push_back(stated_value(value, Quantity::angular_velocity, "--speed-steps", "rpm"));
-    begin = end + 1;
   }
   if (times.empty()) {
     times = {0};
@@ -75,7 +61,7 @@ void vary_temperature(const std::string& text, double duration, Drive& drive) {
   if (text.empty()) return;
   const auto comma = text.find(',');
   const char* example = "20degC..60degC or 20degC..60degC,15s";
-  const auto [from, to] = two_parts(text.substr(0, comma), "..", "--temperature", example);
+  const auto [from, to] = range_ends(text.substr(0, comma), "--temperature", example);
   const double first = stated_value(from, Quantity::temperature, "--temperature", "degC");
   const double last = stated_value(to, Quantity::temperature, "--temperature", "degC");
   if (comma == std::string::npos) {

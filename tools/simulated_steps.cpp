@@ -9,14 +9,15 @@
 #include <vector>
 
 #include "console.hpp"
-#include "driven_options.hpp"
-#include "stated_value.hpp"
+#include "settings.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/record_kind.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/oscillator/velocity_steps.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/output/whole_file.hpp"
 #include "tribofit/version.hpp"
+#include "typed_values.hpp"
 
 using Json = nlohmann::ordered_json;
 
@@ -34,13 +35,10 @@ struct StepsPlan {
 };
 
 RateStateMachine machine_of(const StepsRequest& request, double first_speed) {
-  const std::map<std::string, double> values = rate_state_values(request.values, "--rate-state");
-  const auto value = [&](const char* name, double otherwise) {
-    const auto at = values.find(name);
-    return at == values.end() ? otherwise : at->second;
-  };
+  std::map<std::string, double> values = rate_state_values(request.values, "--rate-state");
+  const auto value = [&](const char* name, double otherwise) { return values.emplace(name, otherwise).first->second; };
   RateStateMachine machine;
-  machine.evolution = find_state_evolution(request.evolution).value_or(StateEvolution::ageing);
+  machine.evolution = request.evolution;
   machine.states = values.contains("D_c2") || values.contains("b_2") ? 2 : 1;
   machine.parameters.a = value("a", 0.01);
   machine.parameters.b = {value("b", 0.012), value("b_2", 0)};
@@ -52,23 +50,25 @@ RateStateMachine machine_of(const StepsRequest& request, double first_speed) {
   return machine;
 }
 
-StepsPlan plan_steps(const StepsRequest& request) {
+StepsPlan plan_steps(const RecordRequest& record, const StepsRequest& request) {
+  if (record.speed_steps.empty())
+    throw InputError("the load point has no speeds", "give --speed-steps 0s:2um/s,60s:10um/s");
   StepsPlan plan;
-  plan.phases = phases_from(request.speeds, "--speed-steps");
+  plan.phases = phases_from(record.speed_steps, "--speed-steps");
   plan.machine = machine_of(request, plan.phases.front().speed);
-  const double duration = stated_value(request.duration, Quantity::time, "--duration", "s");
-  const double rate = stated_value(request.rate, Quantity::frequency, "--rate", "Hz");
+  const double duration = stated_value(record.duration, Quantity::time, "--duration", "s");
+  const double rate = stated_value(record.rate, Quantity::frequency, "--rate", "Hz");
   if (!(rate > 0) || !(duration > plan.phases.back().begin))
     throw InputError("--duration ends before the last of --speed-steps begins", "give a longer one");
   if (duration * rate > kMostSamples)
-    throw InputError(fmt::format("--duration and --rate are {:.3g} samples, more than the {:g} that are simulated",
-                                 duration * rate, kMostSamples),
+    throw InputError(fmt::format("--duration and --rate are {} samples, more than the {} that are simulated",
+                                 general(duration * rate, 3), general(kMostSamples)),
                      "give a shorter duration or a lower rate, such as --rate 100Hz");
   for (std::size_t i = 0; static_cast<double>(i) / rate < duration; ++i)
     plan.times.push_back(static_cast<double>(i) / rate);
   plan.drift = parse_quantity(request.drift, Quantity::inverse_time, "--drift");
-  plan.noise = stated_value(request.noise, Quantity::dimensionless, "--noise-mu");
-  plan.colour = stated_value(request.noise_colour, Quantity::dimensionless, "--noise-colour");
+  plan.noise = stated_value(record.noise_mu, Quantity::dimensionless, "--noise-mu");
+  plan.colour = stated_value(record.noise_colour, Quantity::dimensionless, "--noise-colour");
   if (!(std::abs(plan.colour) < 1)) throw InputError("--noise-colour is not below 1", "give a coefficient such as 0.9");
   return plan;
 }
@@ -92,7 +92,7 @@ std::string rows_of(const StepsPlan& plan, const std::vector<double>& friction, 
   return text;
 }
 
-std::string truth_of(const StepsRequest& request, const StepsPlan& plan) {
+std::string truth_of(const RecordRequest& record, const StepsRequest& request, const StepsPlan& plan) {
   const RateStateParameters<double>& p = plan.machine.parameters;
   const auto item = [](const char* name, double value, const char* unit) {
     return Json{{"name", name}, {"value", value}, {"unit", unit}};
@@ -105,49 +105,58 @@ std::string truth_of(const StepsRequest& request, const StepsPlan& plan) {
   parameters.push_back(item("k", p.stiffness * kMicro, "1/um"));
   parameters.push_back(item("mu_0", plan.machine.base_friction, "1"));
   const Json truth = {{"tool", {{"name", "identify simulate"}, {"version", version}}},
-                      {"trace", {{"path", request.out}, {"samples", plan.times.size()}}},
+                      {"trace", {{"path", record.out}, {"samples", plan.times.size()}}},
                       {"kind", request.kind},
                       {"law", to_string(plan.machine.evolution)},
                       {"parameters", parameters},
                       {"v0_um_s", plan.machine.reference_speed / kMicro},
-                      {"speed_steps", request.speeds},
+                      {"speed_steps", record.speed_steps},
                       {"drift_per_s", plan.drift},
                       {"noise_mu", plan.noise},
                       {"noise_colour", plan.colour},
-                      {"seed", request.seed}};
+                      {"seed", stated_seed(record.seed_text)}};
   return truth.dump(1) + "\n";
 }
 
 }  // namespace
 
 void add_steps_options(const Command& verb, StepsRequest& r) {
-  const auto add = [&](const char* flag, auto& value, const char* help) {
-    return verb.add_option(flag, value, help).group("Velocity steps and holds");
-  };
-  add("--kind", r.kind, "velocity-steps or slide-hold-slide: a load point at the --speed-steps, 0s:2um/s,60s:10um/s")
+  const Command in = verb.in("Velocity steps and holds");
+  in.add_option("--kind", r.kind,
+                "velocity-steps or slide-hold-slide: a load point at the --speed-steps, 0s:2um/s,60s:10um/s")
       .one_of({"velocity-steps", "slide-hold-slide"});
-  add("--rate-state", r.values, "Its friction and spring: a=0.01,b=0.012,D_c=10um,k=0.002/um,mu_0=0.6");
-  add("--evolution", r.evolution, "Law of its state, ageing (default) or slip").one_of(state_evolution_names());
-  add("--reference-speed", r.reference_speed, "v0, at which mu_0 holds, 1um/s (default: the first speed)");
-  add("--drift", r.drift, "Slope of its friction over time, 1e-5/s").show_default();
+  in.add_option("--rate-state", r.values, "Its friction and spring: a=0.01,b=0.012,D_c=10um,k=0.002/um,mu_0=0.6");
+  in.add_read(
+        "--evolution", [&r](const std::string& name) { r.evolution = *find_state_evolution(name); },
+        "Law of its state, ageing (default) or slip")
+      .one_of(state_evolution_names());
+  in.add_option("--reference-speed", r.reference_speed, "v0, at which mu_0 holds, 1um/s (default: the first speed)");
+  in.add_option("--drift", r.drift, "Slope of its friction over time, 1e-5/s").show_default();
 }
 
-void simulate_steps(const StepsRequest& request, const std::string& truth_path) {
-  const StepsPlan plan = plan_steps(request);
-  WholeFile trace_file(request.out), truth_file(truth_path);
-  const RateStateMotion motion = simulate_velocity_steps(plan.machine, plan.phases, plan.times);
-  if (!motion.failure.empty())
-    throw InputError("the record cannot be simulated: " + motion.failure,
-                     "give a stiffer machine, k above (b - a)/D_c, or larger a");
-  trace_file.write(rows_of(plan, motion.friction, request.seed));
-  truth_file.write(truth_of(request, plan));
-  trace_file.finish();
-  truth_file.finish();
-  trace_file.commit();
-  truth_file.commit();
-  if (request.quiet) return;
-  print(fmt::format("{}: {} samples, {} law\n{}: the truth\nnext: identify --kind {} {}\n", request.out,
-                    plan.times.size(), to_string(plan.machine.evolution), truth_path, request.kind, request.out));
+void write_record(const std::string& path, const std::string& truth_path,
+                  const std::function<std::string(WholeFile& record)>& work) {
+  WholeFile record(path), truth(truth_path);  // before the work, so that a bad name costs nothing
+  truth.write(work(record));
+  record.finish();
+  truth.finish();
+  record.commit();
+  truth.commit();
+}
+
+void simulate_steps(const RecordRequest& record, const StepsRequest& request, const std::string& truth_path) {
+  const StepsPlan plan = plan_steps(record, request);
+  write_record(record.out, truth_path, [&](WholeFile& file) {
+    const RateStateMotion motion = simulate_velocity_steps(plan.machine, plan.phases, plan.times);
+    if (!motion.failure.empty())
+      throw InputError("the record cannot be simulated: " + motion.failure,
+                       "give a stiffer machine, k above (b - a)/D_c, or larger a");
+    file.write(rows_of(plan, motion.friction, stated_seed(record.seed_text)));
+    return truth_of(record, request, plan);
+  });
+  if (record.quiet) return;
+  print(fmt::format("{}: {} samples, {} law\n{}: the truth\nnext: identify --kind {} {}\n", record.out,
+                    plan.times.size(), to_string(plan.machine.evolution), truth_path, request.kind, record.out));
 }
 
 }  // namespace tribofit

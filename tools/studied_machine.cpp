@@ -9,10 +9,8 @@
 #include <string_view>
 #include <utility>
 
-#include "analysis_options.hpp"
 #include "exit_status.hpp"
 #include "inputs.hpp"
-#include "parameter_options.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/report/terminal.hpp"
@@ -38,9 +36,10 @@ StudiedMachine given(const Settings& settings, MachineRequest typed) {
   refuse_effects_without_size(typed.effects);
   if (!settings.radius.empty()) typed.radius = settings.radius;
   typed.speed = settings.speed;
-  typed.load = settings.load;
   StudiedMachine out;
   out.machine = machine_from(typed).machine;
+  const Condition& load = settings.identify.read.conditions.load;
+  if (load.known()) out.machine.load = load.value;
   out.source = "given values";
   return out;
 }
@@ -73,7 +72,7 @@ Settings settings_of_trace(Settings settings, const MachineRequest& typed) {
   }
   settings.effects = typed.effects;
   settings.formulas = typed.formulas;
-  if (!typed.law.empty()) settings.laws = {typed.law};
+  if (!typed.law.empty()) settings.identify.laws = {law_named(typed.law)};
   settings.protocol = to_string(Protocol::joint);
   return settings;
 }

@@ -8,19 +8,17 @@
 #include <utility>
 #include <vector>
 
-#include "analysis_options.hpp"
 #include "console.hpp"
 #include "machine_options.hpp"
 #include "map_file.hpp"
-#include "options.hpp"
 #include "results.hpp"
-#include "stated_value.hpp"
 #include "studied_machine.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/output/whole_file.hpp"
 #include "tribofit/report/study.hpp"
+#include "typed_values.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;
@@ -31,8 +29,7 @@ namespace {
 struct StudyRequest {
   Settings settings;  // of the trace, and the outputs
   MachineRequest machine;
-  std::string sharpness;
-  std::string from = "stick";
+  SettleOptions settle;
   std::string range, at;    // speeds
   std::size_t points = 40;  // of a sweep
   std::size_t cycles = 6;   // of a portrait
@@ -43,29 +40,18 @@ struct StudyRequest {
   bool again = false;
 };
 
-SettleOptions settle_options(const StudyRequest& r) {
-  SettleOptions options;
-  if (r.from == "sliding") options.start = StartFrom::sliding;
-  if (r.from == "rest") options.start = StartFrom::rest;
-  if (!r.sharpness.empty()) {
-    options.sharpness = stated_value(r.sharpness, Quantity::inverse_velocity, "--sharpness", "s/mm");
-    if (!(options.sharpness > 0)) {
-      throw InputError("--sharpness: '" + r.sharpness + "' is not greater than zero", "give it as e.g. 500s/mm");
-    }
-    constexpr double kMost = 1e9;  // s/m: beyond it creep in stick is lost in rounding
-    if (options.sharpness > kMost) {
-      throw InputError("--sharpness: '" + r.sharpness + "' is more than 1e6 s/mm",
-                       "leave it out: stick and slip are then located as events");
-    }
-  }
-  return options;
+double sharpness_from(const std::string& text) {
+  const double sharpness = positive_value(text, Quantity::inverse_velocity, "--sharpness", "s/mm");
+  constexpr double kMost = 1e9;  // s/m: beyond it creep in stick is lost in rounding
+  if (sharpness <= kMost) return sharpness;
+  throw InputError("--sharpness: '" + text + "' is more than 1e6 s/mm",
+                   "leave it out: stick and slip are then located as events");
 }
 
 /// A speed of the disc as omega r [m/s], from "6mm/s", "6" or "4rpm".
 double velocity_from(const std::string& text, const Machine& machine, const std::string& option) {
-  const bool bare = text.find_first_not_of("+-.0123456789eE ") == std::string::npos;
-  const double velocity = bare ? stated_value(text, Quantity::velocity, option, "mm/s")
-                               : machine.radius * disc_speed_from(text, machine.radius, option);
+  if (is_bare_number(text)) return positive_value(text, Quantity::velocity, option, "mm/s");
+  const double velocity = machine.radius * disc_speed_from(text, machine.radius, option);
   if (!(velocity > 0))
     throw InputError(option + ": '" + text + "' is not greater than zero", "give e.g. 6mm/s or 4rpm");
   return velocity;
@@ -73,10 +59,8 @@ double velocity_from(const std::string& text, const Machine& machine, const std:
 
 /// "1mm/s..20mm/s" as `count` speeds omega r [m/s].
 std::vector<double> velocities_from(const std::string& text, std::size_t count, const Machine& machine) {
-  const std::vector<std::string> ends = split(text, "..");
-  if (ends.size() != 2)
-    throw InputError("--range: '" + text + "' is not a range", "write it as 1mm/s..20mm/s or 1rpm..8rpm");
-  const double low = velocity_from(ends[0], machine, "--range"), high = velocity_from(ends[1], machine, "--range");
+  const auto [lower, upper] = range_ends(text, "--range", "1mm/s..20mm/s or 1rpm..8rpm");
+  const double low = velocity_from(lower, machine, "--range"), high = velocity_from(upper, machine, "--range");
   if (!(high > low)) throw InputError("--range: '" + text + "' does not rise", "write the lower speed first");
   return evenly_spaced(low, high, count);
 }
@@ -103,10 +87,9 @@ MapAxis axis_from(const std::string& text, const Machine& machine, const std::st
       }
       count = std::stoul(number);
     }
-    const std::vector<std::string> ends = split(range, "..");
-    if (ends.size() != 2) throw bad("'" + range + "' is not a range");
-    low = stated_value(ends[0], axis.variable.quantity, option, axis.variable.unit);
-    high = stated_value(ends[1], axis.variable.quantity, option, axis.variable.unit);
+    const auto [lower, upper] = range_ends(range, option, "stiffness=8N/mm..20N/mm:100");
+    low = stated_value(lower, axis.variable.quantity, option, axis.variable.unit);
+    high = stated_value(upper, axis.variable.quantity, option, axis.variable.unit);
   } else if (axis.variable.name == "ratio") {
     high = std::min(high, 1.0);
   }
@@ -119,19 +102,16 @@ MapAxis axis_from(const std::string& text, const Machine& machine, const std::st
 /// What every kind begins with.
 struct Begun {
   StudiedMachine machine;
-  SettleOptions settle;
   JsonOptions json;
   ReportOptions report;
 };
 
 Begun begin(StudyRequest& r, const Command& kind) {
-  kind.refuse_empty_values();
   refuse_overwriting(r.settings, input_files(r.settings));
   Begun out;
-  out.settle = settle_options(r);
   out.json.arguments = kind.own_options();
   out.machine = studied_machine(r.settings, r.machine, kind);
-  out.machine.sharpness = out.settle.sharpness;
+  out.machine.sharpness = r.settle.sharpness;
   out.report = terminal_options(r.settings, out.json.arguments);
   out.report.inputs = r.settings.traces;
   out.report.shared_arguments = shared_arguments(kind);
@@ -148,9 +128,9 @@ void deliver(const StudyRequest& r, const Begun& b, const Study& study) {
 void run_speed(StudyRequest& r, const Command& kind) {
   const Begun b = begin(r, kind);
   SpeedStudyOptions options;
-  options.settle = b.settle;
+  options.settle = r.settle;
   options.covariance = b.machine.covariance;
-  options.threads = r.settings.threads;
+  options.threads = r.settings.identify.threads;
   options.points = r.points;
   if (!r.range.empty()) options.velocity = velocities_from(r.range, r.points, b.machine.machine);
   ProgressLine line;
@@ -171,14 +151,14 @@ void run_phase(StudyRequest& r, const Command& kind) {
   if (velocities.empty()) velocities = {b.machine.machine.disc_velocity()};
   PortraitOptions options;
   options.cycles = r.cycles;
-  options.settle = b.settle;
+  options.settle = r.settle;
   const std::vector<Portrait> study = study_phase(b.machine.machine, velocities, options);
   deliver(r, b, study);
 }
 
 void run_response(StudyRequest& r, const Command& kind) {
   const Begun b = begin(r, kind);
-  const Response study = study_response(b.machine.machine, r.harmonics, b.settle);
+  const Response study = study_response(b.machine.machine, r.harmonics, r.settle);
   deliver(r, b, study);
 }
 
@@ -188,8 +168,8 @@ void run_sensitivity(StudyRequest& r, const Command& kind) {
   options.variables = r.vary;
   options.factor = r.factor;
   options.count = r.points;
-  options.settle = b.settle;
-  options.threads = r.settings.threads;
+  options.settle = r.settle;
+  options.threads = r.settings.identify.threads;
   ProgressLine line;
   options.progress = [&line](double part) { line.show("sweeps", part); };
   const std::vector<Sensitivity> study = study_sensitivity(b.machine.machine, options);
@@ -201,17 +181,18 @@ void run_map(StudyRequest& r, const Command& kind) {
   const Begun b = begin(r, kind);
   const MeasureInfo& measure = measure_named(r.measure);
   MapRequest request{b.machine.machine, axis_from(r.x, b.machine.machine, "--x"),
-                     axis_from(r.y, b.machine.machine, "--y"), b.settle};
+                     axis_from(r.y, b.machine.machine, "--y"), r.settle};
   check_map(request);
   MapFile file(r.settings.csv, request, r.again);
   ProgressLine progress;
   std::size_t known = file.known_count();
   const double all = static_cast<double>(request.y.values.size());
-  compute_map(request, file.done(), r.settings.threads, [&](std::size_t row, const std::vector<MapCell>& cells) {
-    file.add(row, cells);
-    progress.show("map", static_cast<double>(++known) / all);
-    return true;
-  });
+  compute_map(request, file.done(), r.settings.identify.threads,
+              [&](std::size_t row, const std::vector<MapCell>& cells) {
+                file.add(row, cells);
+                progress.show("map", static_cast<double>(++known) / all);
+                return true;
+              });
   file.finish();
   progress.end();
   deliver(r.settings, {[&] { return report_of(b.machine, request, file.rows(), measure, b.report); },
@@ -224,10 +205,12 @@ Command add_kind(const Command& study, const char* name, const char* help, const
   kind.narrow_help();
   add_input_options(kind, r->settings);
   add_machine_numbers(kind, r->machine);
-  kind.add_option("--sharpness", r->sharpness,
-                  "Smooth the law by an arctangent, e.g. 500s/mm (default: stick and slip as events)");
-  kind.add_option("--from", r->from, "Begin in stick (default), at rest, or in sliding")
-      .one_of({"stick", "rest", "sliding"});
+  kind.add_read(
+      "--sharpness", [r](const std::string& text) { r->settle.sharpness = sharpness_from(text); },
+      "Smooth the law by an arctangent, e.g. 500s/mm (default: stick and slip as events)");
+  kind.add_choice<StartFrom>("--from", r->settle.start,
+                             {{"stick", StartFrom::stick}, {"rest", StartFrom::rest}, {"sliding", StartFrom::sliding}},
+                             "Begin in stick (default), at rest, or in sliding");
   add_output_options(kind, r->settings);
   add_report_option(kind, r->settings);
   kind.option("--csv").describe("Write the tables of the study into this folder");
@@ -253,46 +236,38 @@ void add_study(const Command& app) {
       "  identify study speed --radius 15mm --load 50N --damping-ratio 0.05 trace.csv  # what would more damping do?\n"
       "  identify study phase --radius 15mm --at 2mm/s,6mm/s,20mm/s --csv portraits/\n"
       "  identify study map --radius 15mm --x stiffness=8N/mm..20N/mm:100 --y mass=0.5kg..1.5kg:100 --csv map/");
-  const auto request = [] { return std::make_shared<StudyRequest>(); };
+  const auto kind = [&](const char* name, const char* help, const std::shared_ptr<StudyRequest>& r,
+                        void (*run)(StudyRequest&, const Command&)) {
+    return add_kind(study, name, help, r, run).in(section::kStudy);
+  };
 
-  auto r = request();
-  Command kind = add_kind(study, "speed", "Measures over speed, and the critical speed both ways", r, run_speed);
-  kind.add_option("--range", r->range, "Speeds, 1mm/s..20mm/s or 1rpm..8rpm").group(section::kStudy);
-  kind.add_option("--points", r->points, "Number of speeds (default 40)").range(2, 10000).group(section::kStudy);
+  auto r = std::make_shared<StudyRequest>();
+  Command in = kind("speed", "Measures over speed, and the critical speed both ways", r, run_speed);
+  in.add_option("--range", r->range, "Speeds, 1mm/s..20mm/s or 1rpm..8rpm");
+  in.add_option("--points", r->points, "Number of speeds (default 40)").range(2, 10000);
 
-  r = request();
-  kind = add_kind(study, "phase", "Phase portraits", r, run_phase);
-  kind.add_option("--at", r->at, "Speeds, 2mm/s,6mm/s,20mm/s (default: the machine's own)").group(section::kStudy);
-  kind.add_option("--range", r->range, "Speeds, 1mm/s..20mm/s").group(section::kStudy);
-  kind.add_option("--points", r->points, "Number of speeds in --range").range(2, 1000).group(section::kStudy);
-  kind.add_option("--cycles", r->cycles, "Cycles drawn from the start (default 6)")
-      .range(1, 10000)
-      .group(section::kStudy);
+  r = std::make_shared<StudyRequest>();
+  in = kind("phase", "Phase portraits", r, run_phase);
+  in.add_option("--at", r->at, "Speeds, 2mm/s,6mm/s,20mm/s (default: the machine's own)");
+  in.add_option("--range", r->range, "Speeds, 1mm/s..20mm/s");
+  in.add_option("--points", r->points, "Number of speeds in --range").range(2, 1000);
+  in.add_option("--cycles", r->cycles, "Cycles drawn from the start (default 6)").range(1, 10000);
 
-  r = request();
-  kind = add_kind(study, "response", "A(omega), and spectra of force and displacement", r, run_response);
-  kind.add_option("--harmonics", r->harmonics, "Lines of the spectra (default 20)")
-      .range(1, 1000)
-      .group(section::kStudy);
+  r = std::make_shared<StudyRequest>();
+  in = kind("response", "A(omega), and spectra of force and displacement", r, run_response);
+  in.add_option("--harmonics", r->harmonics, "Lines of the spectra (default 20)").range(1, 1000);
 
-  r = request();
+  r = std::make_shared<StudyRequest>();
   r->points = 21;
-  kind = add_kind(study, "sensitivity", "Which number matters: sweeps and ranked elasticities", r, run_sensitivity);
-  kind.add_option("--vary", r->vary, "Number to vary (repeatable; default: all that matter)")
-      .one_value_each()
-      .group(section::kStudy);
-  kind.add_option("--factor", r->factor, "From 1/factor to factor times its value (default 2)")
-      .range(1.0001, 1e6)
-      .group(section::kStudy);
-  kind.add_option("--points", r->points, "Values of a sweep (default 21)").range(2, 10000).group(section::kStudy);
+  in = kind("sensitivity", "Which number matters: sweeps and ranked elasticities", r, run_sensitivity);
+  in.add_option("--vary", r->vary, "Number to vary (repeatable; default: all that matter)");
+  in.add_option("--factor", r->factor, "From 1/factor to factor times its value (default 2)").range(1.0001, 1e6);
+  in.add_option("--points", r->points, "Values of a sweep (default 21)").range(2, 10000);
 
-  r = request();
-  kind = add_kind(study, "map", "Measures over any two numbers; --csv FOLDER makes it resumable", r, run_map);
-  kind.add_option("--x", r->x, "Across: NAME, or NAME=LOW..HIGH:COUNT as stiffness=8N/mm..20N/mm:100")
-      .required()
-      .group(section::kStudy);
-  kind.add_option("--y", r->y, "Down: the same").required().group(section::kStudy);
-  kind.add_option("--measure", r->measure, "The one printed (all are written): peak-to-peak (default), stick-time, ...")
-      .group(section::kStudy);
-  kind.add_flag("--again", r->again, "Compute rows that are known already, too").group(section::kOutput);
+  r = std::make_shared<StudyRequest>();
+  in = kind("map", "Measures over any two numbers; --csv FOLDER makes it resumable", r, run_map);
+  in.add_option("--x", r->x, "Across: NAME, or NAME=LOW..HIGH:COUNT as stiffness=8N/mm..20N/mm:100").required();
+  in.add_option("--y", r->y, "Down: the same").required();
+  in.add_option("--measure", r->measure, "The one printed (all are written): peak-to-peak (default), stick-time, ...");
+  in.in(section::kOutput).add_flag("--again", r->again, "Compute rows that are known already, too");
 }

@@ -6,13 +6,13 @@
 #include <optional>
 #include <system_error>
 
-#include "analysis_options.hpp"
 #include "console.hpp"
 #include "results.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/output/whole_file.hpp"
 #include "tribofit/report/figures.hpp"
 #include "tribofit/report/pooled.hpp"
+#include "typed_values.hpp"
 
 using namespace tribofit;
 
@@ -32,12 +32,10 @@ std::optional<ComparisonReport> comparison_of(const Settings& s, const ResultRea
 
 Sharing sharing_from(const Settings& s) {
   Sharing sharing;
-  try {
+  as_usage([&] {
     for (const std::string& text : s.share) sharing.common.push_back(share_from(text));
     for (const std::string& text : s.vary) sharing.common.push_back(vary_from(text));
-  } catch (const InputError& error) {
-    throw UsageError(error.what());
-  }
+  });
   for (std::size_t a = 0; a < sharing.common.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
       if (sharing.common[a].parameter != sharing.common[b].parameter) continue;

@@ -3,11 +3,9 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis_options.hpp"
 #include "console.hpp"
 #include "inputs.hpp"
 #include "memory.hpp"
-#include "options.hpp"
 #include "results.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/report/json.hpp"
@@ -36,13 +34,12 @@ ExitStatus run_twin(const Settings& s, const std::vector<std::string>& arguments
   {
     ProgressLine line;
     TwinOptions more;
-    more.seed = s.seed;
+    more.seed = options.fit.seed;
     more.progress = [&line](std::string_view what, double part) { line.show(what, part); };
     result = identify_twin(input.trace, options, more);
   }
   Identification& trace = result.trace;
-  trace.notes.insert(trace.notes.end(), input.notes.begin(), input.notes.end());
-  trace.warnings.insert(trace.warnings.begin(), input.warnings.begin(), input.warnings.end());
+  add_remarks(input, trace);
   deliver(s, {[&] { return report_of(result, terminal_options(s, arguments_for(input, arguments))); },
               [&] { return to_json(result, {arguments}); }});
   if (result.twin.reason.empty()) return ExitStatus::done;
@@ -60,9 +57,5 @@ void add_twin(const Command& app) {
   add_model_options(verb, *settings);
   add_result_options(verb, *settings);
   add_report_option(verb, *settings);
-  verb.on_run([settings, verb] {
-    verb.refuse_empty_values();
-    check_seed(*settings);
-    return run_twin(*settings, verb.own_options());
-  });
+  verb.on_run([settings, verb] { return run_twin(*settings, verb.own_options()); });
 }

@@ -25,7 +25,7 @@ TEST(PlanCommand, SaysWhatIsWrongWithTheMeans) {
   refuses("--speeds 1rpm..2rpm..8rpm", "is not a range", "1rpm..8rpm");
   refuses("--radii 9mm,-12mm", "is not greater than zero", "15mm");
   refuses("--loads 20mm", "--loads", "force");
-  refuses("--minutes 0", "no time to measure in", "10");
+  refuses("--minutes 0", "'0' is not greater than zero", "a time such as");
   refuses("--springs 5", "--springs: '5' has no unit", "N/m");
 }
 
