@@ -172,7 +172,7 @@ std::string sharing_sentence(const SharedFit& fit) {
 void add_shared(const Pooled& pooled, ReportSection& section) {
   for (const SharedFit& fit : pooled.shared) {
     section.add(shared_table(fit));
-    if (const std::string sentence = sharing_sentence(fit); !sentence.empty()) section.soft(sentence);
+    section.soft(sharing_sentence(fit));
     for (const std::string& note : fit.notes) section.soft(note);
   }
 }

@@ -12,7 +12,7 @@
 namespace tribofit {
 namespace {
 
-constexpr double kMicrometre = 1e-6, kMegapascal = 1e6;
+constexpr double kMicrometre = 1e-6;
 
 std::string of_steps(const RateStateFit& fit, std::size_t steps) {
   if (fit.step) return fmt::format("step {}", *fit.step + 1);
@@ -201,9 +201,8 @@ std::string source_text(LoadPointSource source) {
 }
 
 std::string sliding_speed_text(double speed) {
-  constexpr double kNanometre = 1e-9;
   if (speed == 0) return "0";
-  if (speed < 0.1 * kMicrometre) return brief(speed / kNanometre) + " nm/s";
+  if (speed < 0.1 * kMicrometre) return brief(1e9 * speed) + " nm/s";
   return speed < kMillimetre ? brief(speed / kMicrometre) + " um/s" : brief(speed / kMillimetre) + " mm/s";
 }
 
@@ -237,7 +236,7 @@ Facts load_point_facts(const Motion& motion, const RateStateAnalysis* analysis) 
   Facts facts = {
       {"load point", fmt::format("{} ({})", fmt::join(speeds, ", "), source_text(motion.load_point_source))}};
   if (motion.normal_stress.known())
-    facts.emplace_back("normal stress", fmt::format("{} MPa ({})", brief(motion.normal_stress.value / kMegapascal),
+    facts.emplace_back("normal stress", fmt::format("{} MPa ({})", brief(1e-6 * motion.normal_stress.value),
                                                     motion.normal_stress.source));
   if (analysis == nullptr || !(analysis->reference_speed > 0)) return facts;
   facts.emplace_back("v0",

@@ -149,6 +149,15 @@ async function checkNames(page) {
   assert.equal(await page.locator("img").count(), 0);
 }
 
+/** A table without numbers keeps its columns, too. */
+async function checkTables(page) {
+  const names = await page.evaluate(() => {
+    const table = [...document.querySelectorAll("table")].find((one) => one.caption?.textContent === "Health of the data");
+    return [...table.querySelectorAll("thead th")].map((cell) => cell.textContent);
+  });
+  assert.deepEqual(names, ["check", "status", "what was found"]);
+}
+
 /** Every sample that the trace holds lies within what is drawn of the whole record: no peak is lost. */
 async function checkPeaks(page) {
   const rows = readFileSync(example, "utf8").split(/\r?\n/).map((line) => line.split(/[,;\t]/).map(Number))
@@ -186,6 +195,7 @@ try {
     const { page, close } = await open("trace.html", width);
     await checkCharts(page, 12);
     await checkNames(page);
+    await checkTables(page);
     if (width === 1280) {
       await checkHoverAndZoom(page);
       await checkLegend(page);

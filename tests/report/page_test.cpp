@@ -69,6 +69,21 @@ TEST_F(Page, IsBelowFourMegabytesForALongNoisyRecord) {
   EXPECT_LT(page.size(), kMost);
 }
 
+TEST_F(Page, LeavesOutWhatIsForATerminal) {
+  ReportSection section{"one", "One", {}}, terminal{"two", "Two", {}, Medium::terminal};
+  section.plain("for all");
+  section.plain("for a terminal", Medium::terminal);
+  section.add(ReportFacts{{{"radius", "15 mm"}}});
+  terminal.plain("elsewhere");
+  Report report;
+  report.add({terminal, section});
+  const json sections = data_of(report_page(report))["sections"];
+  ASSERT_EQ(sections.size(), 1u);
+  ASSERT_EQ(sections[0]["items"].size(), 2u);
+  EXPECT_EQ(sections[0]["items"][0]["text"], "for all");
+  EXPECT_EQ(sections[0]["items"][1]["pairs"], json::parse(R"([["radius", "15 mm"]])"));
+}
+
 TEST_F(Page, AChartIsAsItWasDescribed) {
   Chart chart;
   chart.id = "one";

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string_view>
 
 #include "made_up.hpp"
@@ -181,6 +182,34 @@ TEST(Terminal, ColourChangesNothingButColour) {
     coloured.erase(at, coloured.find('m', at) - at + 1);
   }
   EXPECT_EQ(coloured, rendered(made_up_result()));
+}
+
+TEST(Terminal, ShowsWhatIsSaidForATerminal) {
+  ReportSection section{"one", "One", {}}, page{"two", "Two", {}, Medium::page};
+  section.plain("for all");
+  section.plain("for a page", Medium::page);
+  section.plain("for a terminal", Medium::terminal);
+  page.plain("elsewhere");
+  Report report;
+  report.add({section, page});
+  EXPECT_EQ(render_terminal(report), "\nOne\n  for all\n  for a terminal\n");
+  report.keep_for(Medium::page);
+  EXPECT_EQ(report.sections.size(), 2u);
+  EXPECT_EQ(render_terminal(report), "\nOne\n  for all\n");
+}
+
+TEST(Terminal, ALongTableSaysHowManyRowsAreLeftOut) {
+  ReportTable table("Many", "many.csv");
+  table.numbers({"k"}).text({"", ""});
+  for (int k = 0; k < 100; ++k) table.rows.push_back({std::to_string(k), "", ""});
+  table.add({"empty"}, std::vector<std::string>(100));
+  Report report;
+  report.add({{"many", "", {table}}});
+  const std::string text = render_terminal(report);
+  const auto rows = std::count(text.begin(), text.end(), '\n') - 4;  // blank, caption, names, what is left out
+  EXPECT_GT(rows, 10);
+  EXPECT_THAT(text, AllOf(HasSubstr("... and " + std::to_string(100 - rows) + " more in many.csv"),
+                          HasSubstr("\n  " + std::to_string(rows - 1) + "\n"), Not(HasSubstr("empty"))));
 }
 
 TEST(Terminal, ShellQuotingSurvivesAnything) {

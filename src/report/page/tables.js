@@ -42,7 +42,7 @@ function prose(text) {
 /** The order of columns: what a reader wants first, the interval, stands behind the value. */
 function columnOrder(header, numeric) {
   const order = header.map((_, k) => k), interval = header.indexOf("95 % interval"), value = numeric[0];
-  if (interval <= value + 1) return order;
+  if (interval < 0 || !(interval > value + 1)) return order;
   order.splice(order.indexOf(interval), 1);
   order.splice(order.indexOf(value) + 1, 0, interval);
   return order;
