@@ -224,20 +224,20 @@ std::string summary(const std::vector<Outcome>& all) {
   const Outcomes singles = of_kind(all, Kind::single), pairs = of_kind(all, Kind::pair),
                  empties = of_kind(all, Kind::nothing), aliens = of_kind(all, Kind::alien),
                  unknowable = of_kind(all, Kind::unknowable);
-  std::string text = "| what is asked | of | figure |\n|---|--:|--:|\n";
+  std::string text = "| what is asked | of | figure (95 % interval) |\n|---|--:|--:|\n";
   const auto row = [&](const char* name, std::size_t n, const std::string& figure) {
     if (n > 0) fmt::format_to(std::back_inserter(text), "| {} | {} | {} |\n", name, n, figure);
   };
   const auto share = [&](const char* name, const Outcomes& asked, const auto& what) {
-    row(name, asked.size(), percent(count(asked, what), asked.size()));
+    row(name, asked.size(), recovery::share(count(asked, what), asked.size()));
   };
   share("single effects named, alone or in a group of at most 4", singles, is_right);
   share("single effects named alone", singles, [](const Outcome* o) { return o->naming == Naming::alone; });
   share("pairs of which both are named", pairs, is_right);
   share("threes of which all are named", of_kind(all, Kind::triple), is_right);
   const std::size_t alarms = empties.size() - count(empties, is_right);
-  row("something named where nothing is hidden (at most, 95 %)", empties.size(),
-      fmt::format("{} ({:.1f} %)", percent(alarms, empties.size()), 100 * upper_bound_95(alarms, empties.size())));
+  row("something named, or left unexplained, where nothing is hidden", empties.size(),
+      recovery::share(alarms, empties.size()));
   share("effects of no catalogue called unexplained over the right variable", aliens, is_right);
   share("ageing at one constant speed called untestable", unknowable, is_right);
   Outcomes named;
@@ -245,8 +245,8 @@ std::string summary(const std::vector<Outcome>& all) {
     std::copy_if(asked.begin(), asked.end(), std::back_inserter(named), is_right);
   share("held-out error within 1.15 times what the true law leaves, where named", named, is_low);
   const Parameters p = parameters(named);
-  row("main parameters within 10 %", p.n, percent(p.close, p.n));
-  row("main parameters inside their 95 % interval", p.n, percent(p.covered, p.n));
+  row("main parameters within 10 %", p.n, recovery::share(p.close, p.n));
+  row("main parameters inside their 95 % interval", p.n, recovery::share(p.covered, p.n));
   row("mean size of the group that holds the hidden effect", singles.size(), mean_group(singles));
   Outcomes tried;
   std::copy_if(singles.begin(), singles.end(), std::back_inserter(tried), was_tried);

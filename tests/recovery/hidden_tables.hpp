@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "hidden_effects.hpp"
+#include "rates.hpp"
 
 namespace recovery {
 
@@ -45,10 +46,6 @@ std::size_t count(const Outcomes& outcomes, Predicate predicate) {
 
 inline std::size_t count(const Outcomes& outcomes, Naming naming) {
   return count(outcomes, [&](const Outcome* o) { return o->failure.empty() && o->naming == naming; });
-}
-
-inline std::string percent(std::size_t hits, std::size_t n) {
-  return n == 0 ? "" : fmt::format("{:.1f} %", 100 * static_cast<double>(hits) / static_cast<double>(n));
 }
 
 inline bool is_right(const Outcome* o) {
