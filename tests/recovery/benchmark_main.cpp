@@ -16,6 +16,7 @@
 
 #include "hidden_effects.hpp"
 #include "hidden_recipes.hpp"
+#include "hidden_tables.hpp"
 
 namespace recovery {
 
@@ -233,11 +234,16 @@ int run(const Options& options) {
     fmt::print("{}", tables(outcomes));
     return 0;
   }
-  fmt::print("{}\n", options.asked   ? groups_table(outcomes)
-                     : options.empty ? empties_table(outcomes)
-                                     : record_kinds_table(outcomes));
+  const Outcomes empties = of_kind(outcomes, Kind::nothing);
+  Outcomes others;
   for (const Outcome& o : outcomes) {
-    if (!o.right) fmt::print("{}\n", line(o));
+    if (o.tested.kind != Kind::nothing) others.push_back(&o);
+  }
+  if (!empties.empty()) fmt::print("{}\n", empties_table(empties));
+  if (!others.empty()) fmt::print("{}\n", groups_table(others));
+  for (const Outcome& o : outcomes) {
+    const bool is_quiet = o.tested.kind == Kind::nothing && o.names.empty() && o.failure.empty();
+    if (!o.right && !is_quiet) fmt::print("- {}\n", line(o));
   }
   return 0;
 }

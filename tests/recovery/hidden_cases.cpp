@@ -179,12 +179,6 @@ SimulatedRecording hide_in(const Case& c, const Run& run, const Model& truth, st
 
 }  // namespace
 
-std::uint64_t hash(std::string_view text, std::uint64_t seed) {
-  std::uint64_t h = 0xcbf29ce484222325u ^ (seed * 0x9e3779b97f4a7c15u);
-  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return h;
-}
-
 Case draw_case(std::string group, std::size_t number, Kind kind, Setting setting, std::uint64_t seed, Random& random) {
   Case c;
   c.name = fmt::format("{}:{}", group, number);

@@ -252,18 +252,9 @@ std::vector<Outcome> run_cases(const std::vector<Case>& cases, int threads, cons
 /// The tables of data/validation/hidden-effects.md, as Markdown.
 std::string tables(const std::vector<Outcome>& outcomes);
 
-/// False alarms, names and intervals of each kind of record, as Markdown.
-std::string record_kinds_table(const std::vector<Outcome>& outcomes);
-
 /// How often intervals of the effects that were named hold the truth: by the number of effects hidden, by noise, by
 /// parameter, and overall, as Markdown.
 std::string coverage_table(const std::vector<Outcome>& outcomes);
-
-/// How often each group of cases was named, as Markdown.
-std::string groups_table(const std::vector<Outcome>& outcomes);
-
-/// What was named, and what else was said, where nothing is hidden, as Markdown.
-std::string empties_table(const std::vector<Outcome>& outcomes);
 
 /// A case fitted with the law and the effects it was made with (those of friction), started at the truth.
 struct KnownFit {

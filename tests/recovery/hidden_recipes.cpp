@@ -22,6 +22,7 @@ std::vector<Setting> settings_for(SketchView view) {
     case SketchView::ripple:
       return {Setting::slow};
     case SketchView::load:
+    case SketchView::load_channel:
       return {Setting::load_swings};
     case SketchView::temperature:
       return {Setting::temperature_swings};
@@ -74,6 +75,12 @@ Ingredient ingredient(const Recipe& recipe, double size, Random& random) {
 Ingredient ingredient(const Recipe& recipe, Random& random) {
   const std::vector<double>& sizes = recipe.hidden.sizes;
   return ingredient(recipe, sizes[random.below(sizes.size())], random);
+}
+
+std::uint64_t hash(std::string_view text, std::uint64_t seed) {
+  std::uint64_t h = 0xcbf29ce484222325u ^ (seed * 0x9e3779b97f4a7c15u);
+  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return h;
 }
 
 std::optional<Programme> sliding_programme(const EffectInfo& effect) {

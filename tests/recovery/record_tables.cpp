@@ -1,4 +1,4 @@
-/// Tables of other kinds of record, of what is asked of sliding, and of intervals after naming.
+/// Tables of records with nothing hidden, of what is asked of sliding, and of intervals after naming.
 #include <string>
 
 #include "hidden_tables.hpp"
@@ -35,7 +35,7 @@ std::string noise_of(const Case& c) {
 
 }  // namespace
 
-std::string empties_table(const std::vector<Outcome>& outcomes) {
+std::string empties_table(const Outcomes& empties) {
   std::string text =
       "| nothing hidden | n | something named | rate (95 %) | named | called unexplained | other verdicts | the law "
       "itself | its 95 % intervals hold the truth |\n|---|--:|--:|--:|---|--:|---|--:|--:|\n";
@@ -59,69 +59,33 @@ std::string empties_table(const std::vector<Outcome>& outcomes) {
                    share(right_law, all.size()), law.cell());
   };
   std::map<std::string, Outcomes> kinds;
-  Outcomes all;
-  for (const Outcome& o : outcomes) {
-    const Case& c = o.tested;
+  for (const Outcome* o : empties) {
+    const Case& c = o->tested;
     const double scatter = c.level_scatter > 0 ? c.level_scatter : c.scatter / c.friction[0];
-    kinds[c.record_kind].push_back(&o);
-    kinds[c.flicker ? "with 1/f noise" : c.colour > 0 ? "with AR(1) noise" : "with white noise"].push_back(&o);
+    kinds[c.record_kind.empty() ? std::string(to_string(c.setting)) : c.record_kind].push_back(o);
+    kinds[c.flicker ? "with 1/f noise" : c.colour > 0 ? "with AR(1) noise" : "with white noise"].push_back(o);
     if (c.programme == Programme::stick_slip) {
       kinds[fmt::format("{} scatter {}", c.wander > 0 ? "wandering" : "independent",
                         scatter < 0.01   ? "below 1 %"
                         : scatter < 0.02 ? "of 1 to 2 %"
                                          : "above 2 %")]
-          .push_back(&o);
+          .push_back(o);
     }
-    all.push_back(&o);
   }
   for (const auto& [name, cases] : kinds) row(name, cases);
-  row("all", all);
+  row("all", empties);
   return text;
 }
 
-std::string record_kinds_table(const std::vector<Outcome>& outcomes) {
-  std::string text =
-      "| kind of record | empty | false alarms | rate at most (95 %) | alarms | loaded | named | alone | wrong | "
-      "missed | "
-      "inside 95 % |\n|---|--:|--:|--:|---|--:|--:|--:|--:|--:|--:|\n";
-  const auto row = [&](const std::string& name, const Outcomes& all) {
-    Outcomes empty, loaded;
-    for (const Outcome* o : all) (o->tested.kind == Kind::nothing ? empty : loaded).push_back(o);
-    const std::size_t alarms = empty.size() - count(empty, is_right);
-    const Parameters p = parameters(loaded);
-    fmt::format_to(std::back_inserter(text), "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name,
-                   empty.size(), alarms,
-                   empty.empty() ? "" : fmt::format("{:.1f} %", 100 * upper_bound_95(alarms, empty.size())),
-                   list(alarms_of(empty)), loaded.size(), percent(count(loaded, is_right), loaded.size()),
-                   count(loaded, Naming::alone), count(loaded, Naming::wrong) + count(loaded, Naming::beside),
-                   count(loaded, Naming::missed), percent(p.covered, p.n));
-  };
-  std::map<std::string, Outcomes> kinds;
-  Outcomes all;
-  for (const Outcome& o : outcomes) {
-    kinds[o.tested.record_kind].push_back(&o);
-    kinds[o.tested.flicker      ? "with 1/f noise"
-          : o.tested.colour > 0 ? "with AR(1) noise"
-                                : "with white noise"]
-        .push_back(&o);
-    all.push_back(&o);
-  }
-  for (const auto& [name, cases] : kinds) row(name, cases);
-  row("all", all);
-  return text;
-}
-
-std::string groups_table(const std::vector<Outcome>& outcomes) {
+std::string groups_table(const Outcomes& all) {
   std::string text = "| asked | n | named | beside another | something else | nothing |\n|---|--:|--:|--:|--:|--:|\n";
-  Outcomes all;
-  for (const Outcome& o : outcomes) all.push_back(&o);
   const auto row = [&](const std::string& name, const Outcomes& g) {
     const auto wrong = [](Naming naming) {
       return [naming](const Outcome* o) { return !o->right && o->naming == naming; };
     };
     fmt::format_to(std::back_inserter(text), "| {} | {} | {} | {} | {} | {} |\n", name, g.size(),
-                   percent(count(g, is_right), g.size()), count(g, wrong(Naming::beside)),
-                   count(g, wrong(Naming::wrong)), count(g, wrong(Naming::missed)));
+                   share(count(g, is_right), g.size()), count(g, wrong(Naming::beside)), count(g, wrong(Naming::wrong)),
+                   count(g, wrong(Naming::missed)));
   };
   for (const Outcomes& g : by_group(all)) row(g[0]->tested.group, g);
   row("all", all);
