@@ -1,16 +1,16 @@
 #pragma once
 
-#include <stdlib.h>
 #include <sys/wait.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "../folder.hpp"
 
 /// Runs the real command in a folder of its own, as a user would from a shell.
 
@@ -19,54 +19,23 @@ struct Outcome {
   std::string out, err;
 };
 
-inline std::string contents(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
+using tribofit::contents;
 
-class Workshop {
+class Workshop : public tribofit::Folder {
  public:
-  Workshop() {
-    std::string name = (std::filesystem::temp_directory_path() / "tribofit-cli-XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  ~Workshop() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-    std::filesystem::remove_all(logs(""), ignored);
-  }
-  Workshop(const Workshop&) = delete;
-  Workshop& operator=(const Workshop&) = delete;
-
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
   /// A shell line; `identify` in it is the command under test.
   Outcome shell(const std::string& line) const {
-    const std::filesystem::path out = logs(".out"), err = logs(".err");
-    const std::string setup = "identify() { '" TRIBOFIT_IDENTIFY "' \"$@\"; }\ncd '" + path_.string() + "'\n";
-    std::ofstream(logs(".sh")) << setup << line << "\n";
+    const std::filesystem::path out = logs_ / "out", err = logs_ / "err";
+    const std::string setup = "identify() { '" TRIBOFIT_IDENTIFY "' \"$@\"; }\ncd '" + path() + "'\n";
+    std::ofstream(logs_ / "sh") << setup << line << "\n";
     const int raw = std::system(
-        ("sh '" + logs(".sh").string() + "' >'" + out.string() + "' 2>'" + err.string() + "' </dev/null").c_str());
+        ("sh '" + (logs_ / "sh").string() + "' >'" + out.string() + "' 2>'" + err.string() + "' </dev/null").c_str());
     return {WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw), contents(out), contents(err)};
   }
   Outcome identify(const std::string& arguments) const { return shell("identify " + arguments); }
 
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name, std::ios::binary) << text;
-  }
-  std::vector<std::string> names() const {
-    std::vector<std::string> found;
-    for (const auto& entry : std::filesystem::directory_iterator(path_))
-      found.push_back(entry.path().filename().string());
-    std::sort(found.begin(), found.end());
-    return found;
-  }
-
  private:
-  /// Beside the folder, so that the folder holds nothing but what the command wrote.
-  std::filesystem::path logs(const std::string& suffix) const { return path_.string() + suffix; }
-
-  std::filesystem::path path_;
+  Folder logs_;  ///< beside it, so that it holds nothing but what the command wrote
 };
 
 /// A simulated trace of the published rig at 15 mm (14 cycles in 3 s at 5 kHz), made once.

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "../real_data.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/statistics/polynomials.hpp"
@@ -21,18 +21,12 @@ using ::testing::Contains;
 class RealData : public ::testing::Test {
  protected:
   void SetUp() override {
-    const char* given = std::getenv("TRIBOFIT_SHARED_DIR");
-    shared_ = (given != nullptr ? std::filesystem::path(given)
-                                : std::filesystem::path(TRIBOFIT_SOURCE_DIR) / ".." / "shared") /
-              "measured";
-    if (!std::filesystem::exists(shared_)) GTEST_SKIP() << shared_ << " is absent";
+    if (!std::filesystem::exists(real_data("measured"))) GTEST_SKIP() << real_data("measured") << " is absent";
   }
 
   DiagnosedTraces diagnosed(const std::string& file, ReadOptions read, const IdentifyOptions& options = {}) const {
-    return diagnose({{(shared_ / file).string(), std::move(read), {}}}, options);
+    return diagnose({{(real_data("measured") / file).string(), std::move(read), {}}}, options);
   }
-
-  std::filesystem::path shared_;
 };
 
 const EffectFinding& finding(const DiagnosedTraces& result, const std::string& key) {

@@ -105,35 +105,6 @@ TEST_P(EveryEffect, SaysHowItIsDrawnAndSearched) {
   }
 }
 
-/// The benchmark of hidden effects hides it in these sizes.
-TEST_P(EveryEffect, SaysHowLargePeopleMeetIt) {
-  const EffectInfo info = describe(model_.effects()[0]);
-  ASSERT_FALSE(info.hidden.sizes.empty());
-  ASSERT_EQ(info.hidden.others.size() + 1, info.parameters.size());
-  const auto within = [](const Parameter& p, double value) { return p.lower <= value && value <= p.upper; };
-  for (const double size : info.hidden.sizes) {
-    EXPECT_TRUE(within(info.parameters[0], size)) << size;
-    if (info.hidden.either_sign) {
-      EXPECT_TRUE(within(info.parameters[0], -size)) << -size;
-    }
-  }
-  // The least first.
-  const double neutral = info.parameters[0].neutral;
-  if (!std::isnan(neutral)) {
-    for (std::size_t k = 1; k < info.hidden.sizes.size(); ++k) {
-      EXPECT_GT(std::abs(info.hidden.sizes[k] - neutral), std::abs(info.hidden.sizes[k - 1] - neutral));
-    }
-  }
-  for (std::size_t k = 0; k < info.hidden.others.size(); ++k) {
-    const Parameter& p = info.parameters[k + 1];
-    const ValueDraw& draw = info.hidden.others[k];
-    for (const double value : draw.choices) EXPECT_TRUE(within(p, value)) << p.name;
-    if (draw.choices.empty()) {
-      EXPECT_TRUE(within(p, draw.lower) && within(p, draw.upper) && draw.lower < draw.upper) << p.name;
-    }
-  }
-}
-
 /// Derivatives of friction along a slip, and of its break-away level, against differences.
 void expect_derivatives(const FrictionModel& model, const std::vector<double>& p, const Slip& slip) {
   using Dual = ceres::Jet<double, 8>;

@@ -45,7 +45,7 @@ void read_all(const std::string& folder) {
 }  // namespace
 
 void read_earlier_bytes(std::string_view bytes) {
-  static const Scratch scratch("earlier");
+  static const Folder scratch;
   static const std::vector<PooledGroup> groups = {group()};
   const std::string path = scratch.write("table.csv", bytes);
   is_read([&] {
@@ -56,7 +56,7 @@ void read_earlier_bytes(std::string_view bytes) {
 }
 
 void read_results_bytes(std::string_view bytes) {
-  static const Scratch scratch("results");
+  static const Folder scratch;
   [[maybe_unused]] static const std::string campaign = scratch.write(
       campaign_name, sealed(R"({"folder": "runs", "runs": [{"name": "a", "file": "a.csv", "settings": "1"}],
   "problems": []
@@ -68,7 +68,7 @@ void read_results_bytes(std::string_view bytes) {
 }
 
 void read_campaign_bytes(std::string_view bytes) {
-  static const Scratch scratch("campaign");
+  static const Folder scratch;
   scratch.write(campaign_name, sealed(bytes));
   read_all(scratch.path());
 }

@@ -60,7 +60,7 @@ TEST_P(Corpus, IsReadOrRefused) {
   std::vector<std::string> seeds = corpus_in(fs::path(TRIBOFIT_SOURCE_DIR) / "tests/fuzz/corpus" / name);
   ASSERT_FALSE(seeds.empty());
   if (std::string_view(name) == "trace") {
-    const Scratch folder("seeds");
+    const Folder folder;
     write_seeds(folder.path());
     for (std::string& seed : corpus_in(folder.path())) seeds.push_back(std::move(seed));
   }

@@ -20,8 +20,8 @@ void require_valid(const Manifest& manifest) {
 }
 
 /// Two runs beside the manifest.
-const Scratch& folder_with_runs() {
-  static const Scratch scratch("manifest");
+const Folder& folder_with_runs() {
+  static const Folder scratch;
   for (const char* name : {"a.csv", "b.csv"}) scratch.write(name, "time_s,mu\n");
   return scratch;
 }
@@ -29,7 +29,7 @@ const Scratch& folder_with_runs() {
 }  // namespace
 
 void read_manifest_bytes(std::string_view bytes) {
-  static const Scratch& folder = folder_with_runs();
+  static const Folder& folder = folder_with_runs();
   folder.write(manifest_name, bytes);
   for (const auto errors : {ManifestErrors::refuse, ManifestErrors::collect}) {
     is_read([&] { require_valid(read_manifest(folder.path(), errors)); });

@@ -28,7 +28,7 @@ MapRequest small_map() {
 }
 
 /// The line that says of what map the rows are.
-std::string head_of(const Scratch& scratch, const MapRequest& request) {
+std::string head_of(const Folder& scratch, const MapRequest& request) {
   const MapFile begun(scratch.path(), request, true);
   std::ifstream in(scratch.path() + "/map.rows");
   std::string line;
@@ -39,7 +39,7 @@ std::string head_of(const Scratch& scratch, const MapRequest& request) {
 }  // namespace
 
 void read_map_bytes(std::string_view bytes) {
-  static const Scratch scratch("map");
+  static const Folder scratch;
   static const MapRequest request = small_map();
   static const std::string head = head_of(scratch, request);
   scratch.write("map.rows", head + std::string(bytes));

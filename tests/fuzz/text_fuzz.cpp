@@ -12,7 +12,7 @@
 namespace tribofit::fuzz {
 
 void read_instruments_bytes(std::string_view bytes) {
-  static const Scratch scratch("instruments");
+  static const Folder scratch;
   const std::string path = scratch.write("lab.json", bytes);
   is_read([&] {
     const Instruments lab = read_instruments(path);

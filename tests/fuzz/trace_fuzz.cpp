@@ -33,7 +33,7 @@ void require_valid(const Trace& trace) {
 }  // namespace
 
 void read_trace_bytes(std::string_view bytes) {
-  static const Scratch scratch("trace");
+  static const Folder scratch;
   const std::string path = scratch.write("trace.csv", bytes);
   ReadOptions options;
   options.threads = 1;

@@ -15,7 +15,7 @@ std::string table(const std::string& rows) {
 
 TEST_F(BadInput, FilesThatAreNoTable) {
   expect_error(path("absent.csv"), {}, "cannot be opened: No such file", "path");
-  expect_error(folder_.string(), {}, "is a folder", "CSV");
+  expect_error(folder_.path(), {}, "is a folder", "CSV");
   expect_error(write(""), {}, "is empty", "export");
   expect_error(write("\n\n\n"), {}, "is empty", "export");
   expect_error(write("time_s,mu,v_b_mm_s\n"), {}, "header but no rows of numbers", "export", 1);

@@ -13,7 +13,7 @@ class ManifestTest : public TempFiles {
   }
   Manifest read(std::string_view text) const {
     write(text, manifest_name);
-    return read_manifest(folder_.string());
+    return read_manifest(folder_.path());
   }
   void refuses(std::string_view text, std::size_t line, std::string_view column, std::string_view problem,
                std::string_view advice) const {
@@ -122,7 +122,7 @@ TEST_F(ManifestTest, DefectsOfRowsAreCollectedWhereAsked) {
       "file,radius\nr15-1.csv,15mm\nmissing.csv,15mm\nr15-2.csv,15mn\nr15-1.csv,15mm\nr9-1.csv,9mm\nr9-1.csv,8mm\n"
       "x*.csv,9mm\n,9mm\nr15-3.csv,15mm\n",
       manifest_name);
-  const Manifest m = read_manifest(folder_.string(), ManifestErrors::collect);
+  const Manifest m = read_manifest(folder_.path(), ManifestErrors::collect);
   using ::testing::HasSubstr;
   ASSERT_EQ(m.rows.size(), 5u);
   EXPECT_EQ(m.rows[0].problem, "");

@@ -1,8 +1,8 @@
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 #include <numeric>
 
+#include "../real_data.hpp"
 #include "temp_files.hpp"
 #include "tribofit/ingest/list_columns.hpp"
 
@@ -22,19 +22,15 @@ double mean(const std::vector<double>& values, std::size_t begin = 0, std::size_
 class RealFiles : public ::testing::Test {
  protected:
   void SetUp() override {
-    const char* named = std::getenv("TRIBOFIT_SHARED_DIR");
-    shared_ =
-        named != nullptr ? std::filesystem::path(named) : std::filesystem::path(TRIBOFIT_SOURCE_DIR) / ".." / "shared";
-    if (!std::filesystem::exists(shared_ / "measured")) GTEST_SKIP() << "no measured traces in " << shared_;
+    if (!std::filesystem::exists(real_data("measured"))) GTEST_SKIP() << real_data("measured") << " is absent";
   }
-  std::filesystem::path shared_;
 };
 
 TEST_F(RealFiles, DrillString) {
   ReadOptions options;
   options.columns = {{"v_r", "bit_speed_rpm"}, {"torque", "torque_on_bit_Nm"}, {"load", "weight_on_bit_N"}};
   options.conditions.radius = {0.05, "command line"};
-  const Trace trace = read_trace((shared_ / "measured/drill-string/drillstring_175.csv").string(), options);
+  const Trace trace = read_trace(real_data("measured/drill-string/drillstring_175.csv").string(), options);
   ASSERT_EQ(trace.size(), 59000U);
   EXPECT_NEAR(trace.rate(), 1000, 1e-6);
   EXPECT_EQ(trace.velocity_kind, VelocityKind::relative);
@@ -67,7 +63,7 @@ TEST_F(RealFiles, RotaryTribometer) {
         Recipe{"019_FX2_Polyimide_0.25in_Rotary_3N_4tests_75-300mm-s_6-15mm-radius_3min-each.csv", radii, up, {}}}) {
     ReadOptions options;
     options.step_radii.assign(recipe.radii.begin(), recipe.radii.end());
-    const Trace trace = read_trace((shared_ / "measured/rotary-tribometer" / recipe.file).string(), options);
+    const Trace trace = read_trace((real_data("measured/rotary-tribometer") / recipe.file).string(), options);
     EXPECT_NEAR(static_cast<double>(trace.size()), 7197, 2);
     EXPECT_EQ(trace.velocity_kind, VelocityKind::fixed_block);
     ASSERT_EQ(trace.steps.size(), 4U);
@@ -90,7 +86,7 @@ TEST_F(RealFiles, RotaryTribometer) {
 TEST_F(RealFiles, EmpsHasNoLoad) {
   ReadOptions options;
   options.columns = {{"v_r", "dq_f_m_per_s"}, {"force", "Force1_N"}};
-  const Trace trace = read_trace((shared_ / "measured/emps/emps_training_measured.csv").string(), options);
+  const Trace trace = read_trace(real_data("measured/emps/emps_training_measured.csv").string(), options);
   EXPECT_EQ(trace.size(), 24841U);
   EXPECT_EQ(trace.friction_kind, FrictionKind::force);
   EXPECT_DOUBLE_EQ(trace.friction[0], 89.2344322);
@@ -98,7 +94,7 @@ TEST_F(RealFiles, EmpsHasNoLoad) {
 }
 
 TEST_F(RealFiles, EveryDevelopmentTrace) {
-  const auto folder = shared_ / "hidden-effects/dev";
+  const auto folder = real_data("hidden-effects/dev");
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
   std::size_t count = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
@@ -121,13 +117,12 @@ TEST_F(RealFiles, EveryDevelopmentTrace) {
 }
 
 /// Files as laboratories have them.
-class LaboratoryFiles : public RealFiles {
+class LaboratoryFiles : public ::testing::Test {
  protected:
   void SetUp() override {
-    RealFiles::SetUp();
-    if (!IsSkipped() && !std::filesystem::exists(shared_ / "lab-files")) GTEST_SKIP() << "no files in " << shared_;
+    if (!std::filesystem::exists(real_data("lab-files"))) GTEST_SKIP() << real_data("lab-files") << " is absent";
   }
-  std::string file(const char* name) const { return (shared_ / "lab-files" / name).string(); }
+  std::string file(const char* name) const { return (real_data("lab-files") / name).string(); }
   /// Read with these columns, at a stated speed and radius.
   Trace read(const char* name, std::map<std::string, std::string> columns) const {
     ReadOptions options;

@@ -2,13 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
 
+#include "../folder.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/read_trace.hpp"
 
@@ -17,22 +15,9 @@ namespace tribofit {
 /// A folder of its own for each test, removed afterwards.
 class TempFiles : public ::testing::Test {
  protected:
-  TempFiles() {
-    folder_ =
-        std::filesystem::temp_directory_path() / ("tribofit-ingest-" + std::to_string(::getpid()) + "-" +
-                                                  ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
-  }
-  ~TempFiles() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
+  std::string path(const std::string& name) const { return folder_.path(name); }
   std::string write(std::string_view text, const std::string& name = "trace.csv") const {
-    std::ofstream(path(name), std::ios::binary) << text;
-    return path(name);
+    return folder_.write(name, text);
   }
 
   /// Expects an InputError whose parts hold the given ones.
@@ -51,7 +36,7 @@ class TempFiles : public ::testing::Test {
     }
   }
 
-  std::filesystem::path folder_;
+  Folder folder_;
 };
 
 }  // namespace tribofit

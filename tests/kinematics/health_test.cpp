@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
@@ -13,6 +12,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../real_data.hpp"
 #include "stick_slip_truth.hpp"
 #include "tribofit/kinematics/motion.hpp"
 #include "tribofit/oscillator/presets.hpp"
@@ -130,10 +130,7 @@ TEST(Health, BandwidthOfAFilteredChannel) {
 }
 
 TEST(Health, BandwidthOfTheDrillStringsChannels) {
-  const char* given = std::getenv("TRIBOFIT_SHARED_DIR");
-  const std::filesystem::path shared =
-      given ? std::filesystem::path(given) : std::filesystem::path(TRIBOFIT_SOURCE_DIR) / ".." / "shared";
-  const auto path = shared / "measured/drill-string/drillstring_175.csv";
+  const auto path = real_data("measured/drill-string/drillstring_175.csv");
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent";
   std::ifstream file(path);
   std::string line;

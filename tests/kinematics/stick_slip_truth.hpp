@@ -20,8 +20,10 @@ struct Rig {
   double static_friction = 0.509, kinetic_friction = 0.318, decay = 52.14;  // s/m
   double rate = 20000, duration = 6;
   double friction_noise = 0.003, velocity_noise = 2e-5, noise_correlation = 0, scatter = 0;
-  double wander = 0;  // correlation of the scatter from cycle to cycle
+  double wander = 0;         // correlation of the scatter from cycle to cycle
+  double level_scatter = 0;  // of all friction of a cycle, as a part of it
   bool coulomb = false;
+  bool fractional = false;    // friction falls as 1/(1 + decay v)
   bool flat_at_rest = false;  // friction falls as exp(-(decay v)^2)
   unsigned seed = 1;
   double ripple = 0, ripple_order = 1, ripple_phase = 0;  // omega (1 + A cos(n omega t + phase))
@@ -64,7 +66,7 @@ class Block {
  public:
   Block(const Rig& rig, std::mt19937_64& random, Run& run) : rig_(rig), random_(random), run_(run) {
     deviation_ = normal_(random_);
-    level_ = rig_.static_friction + rig_.scatter * deviation_;
+    draw_level();
     x_ = 0.6 * rig_.load * level_ / rig_.stiffness;
     v_ = rig_.disc(0);
   }
@@ -76,11 +78,15 @@ class Block {
   double friction() const { return sticking_ ? pull(x_, t_) / rig_.load : law(rig_.disc(t_) - v_); }
 
  private:
+  void draw_level() {
+    factor_ = 1 + rig_.level_scatter * deviation_;
+    level_ = factor_ * rig_.static_friction + rig_.scatter * deviation_;
+  }
   double law(double v) const {
-    const double drop = level_ - rig_.kinetic_friction;
-    if (rig_.coulomb) return rig_.kinetic_friction + drop * (v > 0 ? 0.0 : 1.0);
-    const double x = rig_.decay * v;
-    return rig_.kinetic_friction + drop * std::exp(rig_.flat_at_rest ? -x * x : -x);
+    const double x = rig_.decay * v, lowest = factor_ * rig_.kinetic_friction, drop = level_ - lowest;
+    if (rig_.coulomb) return lowest + drop * (v > 0 ? 0.0 : 1.0);
+    if (rig_.fractional) return lowest + drop / (1 + x);
+    return lowest + drop * std::exp(rig_.flat_at_rest ? -x * x : -x);
   }
   double acceleration(double x, double v, double t) const {
     return (rig_.load * law(rig_.disc(t) - v) - rig_.stiffness * x - damping_ * v) / rig_.mass;
@@ -126,7 +132,7 @@ class Block {
     x_ += part * (x - x_), t_ += part * h, v_ = rig_.disc(t_), sticking_ = true;
     run_.restick_time.push_back(t_);
     deviation_ = rig_.wander * deviation_ + std::sqrt(1 - rig_.wander * rig_.wander) * normal_(random_);
-    level_ = rig_.static_friction + rig_.scatter * deviation_;
+    draw_level();
   }
 
   const Rig& rig_;
@@ -135,7 +141,7 @@ class Block {
   std::normal_distribution<double> normal_;
   const double damping_ = 2 * rig_.zeta * std::sqrt(rig_.mass * rig_.stiffness);
   const double fine_ = 1 / rig_.rate / 8;
-  double deviation_ = 0, level_ = 0;  ///< static friction of this cycle
+  double deviation_ = 0, factor_ = 1, level_ = 0;  ///< level_: static friction of this cycle
   double x_ = 0, v_ = 0, t_ = 0;
   bool sticking_ = true;
 };

@@ -17,7 +17,7 @@
 #include <thread>
 #include <vector>
 
-#include "report/folder.hpp"
+#include "../folder.hpp"
 
 namespace tribofit {
 namespace {

@@ -1,26 +1,38 @@
 // What acquisition does to a record.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <functional>
 #include <numbers>
 #include <random>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "../kinematics/stick_slip_truth.hpp"
 #include "tribofit/ingest/trace.hpp"
+#include "tribofit/kinematics/motion.hpp"
 
 namespace tribofit::altered {
 
 using Random = std::mt19937_64;
 
+/// A distortion that is undone, and its true value.
+struct Undone {
+  UndoneDistortion Motion::*found;
+  double truth;
+};
+
 /// What was done to a record, and the check that must name it.
 struct Alteration {
-  const char* name;
+  std::string name;
   std::function<void(Trace&, Random&)> apply;
-  const char* check;
-  const char* sentence;
+  std::string check;
+  std::vector<Undone> undone = {};
 };
 
 inline std::size_t any_sample(const Trace& trace, Random& random) {
@@ -120,31 +132,48 @@ inline std::function<void(Trace&, Random&)> compressed(double part) {
   };
 }
 
-inline std::function<void(Trace&, Random&)> low_passed(std::vector<Channel> channels, double corner) {
+/// How an instrument's continuous filter is computed from samples: the input holds its next sample (what kinematics/
+/// undoes), holds the last one, or runs straight between them, for which each is exact; or by the bilinear transform,
+/// exact at the corner.
+enum class Discretisation { next_held, last_held, straight, bilinear };
+
+/// A Butterworth filter of first or second order: of each conjugate pair of poles the one above the real axis.
+inline std::function<void(Trace&, Random&)> butterworth(std::vector<Channel> channels, int order, double corner,
+                                                        Discretisation how) {
   return [=](Trace& trace, Random&) {
-    const double keep = std::exp(-2 * std::numbers::pi * corner * trace.interval());
+    using Complex = std::complex<double>;
+    const double w = 2 * std::numbers::pi * corner, step = trace.interval();
+    const Complex pole = order == 1 ? Complex(-w) : std::polar(w, 0.75 * std::numbers::pi);
+    const Complex gain = order == 1 ? Complex(w) : 2 * w * w / (pole - std::conj(pole));
+    Complex keep = std::exp(pole * step), now = 0, before = 0;
+    const Complex all = gain * (keep - 1.0) / pole;
+    if (how == Discretisation::next_held) now = all;
+    if (how == Discretisation::last_held) before = all;
+    if (how == Discretisation::straight) {
+      now = gain * (keep - 1.0 - pole * step) / (pole * pole * step);
+      before = all - now;
+    }
+    if (how == Discretisation::bilinear) {
+      const double c = w / std::tan(0.5 * w * step);
+      keep = (c + pole) / (c - pole);
+      now = before = gain / (c - pole);
+    }
     for (const Channel channel : channels) {
-      double state = (trace.*channel).front();
-      for (double& x : trace.*channel) x = state = keep * state + (1 - keep) * x;
+      double last = (trace.*channel).front();
+      Complex state = (now + before) / (1.0 - keep) * last;
+      for (double& x : trace.*channel) {
+        state = keep * state + now * x + before * last;
+        last = std::exchange(x, state.real());
+      }
     }
   };
 }
 
-/// A Butterworth filter of second order.
+inline std::function<void(Trace&, Random&)> low_passed(std::vector<Channel> channels, double corner) {
+  return butterworth(std::move(channels), 1, corner, Discretisation::next_held);
+}
 inline std::function<void(Trace&, Random&)> low_passed_twice(std::vector<Channel> channels, double corner) {
-  return [=](Trace& trace, Random&) {
-    const double w = std::tan(std::numbers::pi * corner * trace.interval()), k = std::numbers::sqrt2 * w;
-    const double norm = 1 / (1 + k + w * w), b = w * w * norm, a1 = 2 * (w * w - 1) * norm, a2 = (1 - k + w * w) * norm;
-    for (const Channel channel : channels) {
-      std::vector<double>& x = trace.*channel;
-      double x1 = x[0], x2 = x[0], y1 = x[0], y2 = x[0];
-      for (double& value : x) {
-        const double y = b * (value + 2 * x1 + x2) - a1 * y1 - a2 * y2;
-        x2 = x1, x1 = value, y2 = y1, y1 = y;
-        value = y;
-      }
-    }
-  };
+  return butterworth(std::move(channels), 2, corner, Discretisation::bilinear);
 }
 
 /// A centred mean.
@@ -214,77 +243,82 @@ inline std::function<void(Trace&, Random&)> then_at(double rpm) {
   };
 }
 
-inline const std::vector<Alteration>& alterations() {
-  static const std::vector<Alteration> list = {
-      {"friction: five cells of -9999", cells(kFriction, -9999), "drop-outs", "marker value"},
-      {"velocity: five cells of 1e38", cells(kVelocity, 1e38), "drop-outs", "marker value"},
-      {"friction: five cells of 9.9E37", cells(kFriction, 9.9e37), "drop-outs", "marker value"},
-      {"friction: a hundred cells of 9999", cells(kFriction, 9999, 100), "drop-outs", "marker value"},
-      {"friction: lone spikes", spikes(kFriction, 0.3), "drop-outs", "lone sample"},
-      {"velocity: lone spikes", spikes(kVelocity, 0.04), "drop-outs", "lone sample"},
-      {"friction: frozen for a tenth", frozen({kFriction}), "drop-outs", "friction repeats one value"},
-      {"velocity: frozen for a tenth", frozen({kVelocity}), "drop-outs", "velocity repeats one value"},
-      {"both: frozen for a tenth", frozen({kFriction, kVelocity}), "drop-outs", "repeats one value"},
-      {"friction: a loose plug", loose({kFriction}), "drop-outs", "friction repeats one value"},
-      {"both: a loose plug", loose({kFriction, kVelocity}), "drop-outs", "repeats one value"},
-      {"machine stopped at the end", stopped(0.85, 1), "drop-outs", "stands still"},
-      {"machine stopped at the start", stopped(0, 0.15), "drop-outs", "stands still"},
-      {"friction: clipped at 0.5, dither 2e-4", clipped_friction(0.5, 2e-4), "clipping", "mu_s"},
-      {"friction: clipped at 0.5, dither 1e-3", clipped_friction(0.5, 1e-3), "clipping", "mu_s"},
-      {"friction: clipped at 0.4", clipped_friction(0.4, 2e-4), "clipping", "mu_s"},
-      {"velocity: clipped at 0.7, dither", clipped_velocity(0.7, 5e-6), "clipping", "alpha"},
-      {"velocity: clipped at 0.95, dither", clipped_velocity(0.95, 2e-5), "clipping", "alpha"},
-      {"velocity: clipped at 0.5", clipped_velocity(0.5, 0), "clipping", "alpha"},
-      {"velocity: eight bits", rounded(kVelocity, 0.8e-3), "resolution", "steps of 0.8 mm/s"},
-      {"friction: seven bits", rounded(kFriction, 0.004), "resolution", "steps of 0.004"},
-      {"friction: clipped at 0.4, dither 2e-3", clipped_friction(0.4, 2e-3), "clipping", "mu_s"},
-      {"friction: five bits, no sample alone", rounded(kFriction, 0.008), "resolution", "steps of 0.008"},
-      {"machine stopped half way", stopped(0.4, 0.55), "drop-outs", "stands still"},
-      {"velocity: zero off by 0.2 mm/s", shifted(2e-4), "plateau-speed", "the velocity has a zero error; corrected"},
-      {"velocity: zero off by -0.2 mm/s", shifted(-2e-4), "plateau-speed", "the velocity has a zero error; corrected"},
-      {"velocity: zero off by 1 mm/s", shifted(1e-3), "plateau-speed", "the velocity has a zero error; corrected"},
-      {"one in a hundred samples lost", lost(0.01, 1), "drop-outs", "samples were lost"},
-      {"one in twenty samples lost", lost(0.05, 1), "drop-outs", "samples were lost"},
-      {"one in five samples lost", lost(0.2, 1), "drop-outs", "samples were lost"},
-      {"disc from 4 to 8 rpm", then_at(8), "plateau-speed", "the speed of the disc steps"},
-      {"disc from 4 to 5 rpm", then_at(5), "plateau-speed", "the speed of the disc steps"},
-      {"both: low-pass of 100 Hz", low_passed({kFriction, kVelocity}, 100), "bandwidth", "first-order low-pass"},
-      {"both: low-pass of 200 Hz", low_passed({kFriction, kVelocity}, 200), "bandwidth", "first-order low-pass"},
-      {"both: low-pass of 500 Hz", low_passed({kFriction, kVelocity}, 500), "bandwidth", "first-order low-pass"},
-      {"both: low-pass of 1 kHz", low_passed({kFriction, kVelocity}, 1000), "bandwidth", "first-order low-pass"},
-      {"both: low-pass of 2 kHz", low_passed({kFriction, kVelocity}, 2000), "bandwidth", "first-order low-pass"},
-      {"velocity: low-pass of 500 Hz", low_passed({kVelocity}, 500), "bandwidth", "first-order low-pass"},
-      {"velocity: low-pass of 1 kHz", low_passed({kVelocity}, 1000), "bandwidth", "first-order low-pass"},
-      {"velocity: gain falls by 10 %", compressed(0.1), "plateau-speed", "the velocity channel is nonlinear"},
-      {"velocity: gain falls by 5 %", compressed(0.05), "plateau-speed", "the velocity channel is nonlinear"},
-      {"velocity: gain rises by 10 %", compressed(-0.1), "plateau-speed", "the velocity channel is nonlinear"},
-      {"clocks 50 ppm apart", clocks_apart(50), "channel-delay", "their clocks drift apart"},
-      {"clocks 100 ppm apart", clocks_apart(100), "channel-delay", "their clocks drift apart"},
-      {"clocks -200 ppm apart", clocks_apart(-200), "channel-delay", "their clocks drift apart"},
-      {"velocity: low-pass of 200 Hz", low_passed({kVelocity}, 200), "bandwidth", "first-order low-pass"},
-      {"friction: low-pass of 200 Hz", low_passed({kFriction}, 200), "bandwidth", "first-order low-pass"},
-      {"friction: low-pass of 1 kHz", low_passed({kFriction}, 1000), "bandwidth", "first-order low-pass"},
+/// First-order low-passes, which are undone.
+inline std::vector<Alteration> low_passes() {
+  const auto lag = [](UndoneDistortion Motion::*found, double corner) {
+    return Undone{found, 1 / (2 * std::numbers::pi * corner)};
   };
+  std::vector<Alteration> list;
+  for (const double f : {100.0, 200.0, 500.0, 1000.0, 2000.0}) {
+    const Undone velocity = lag(&Motion::velocity_low_pass, f), friction = lag(&Motion::friction_low_pass, f);
+    const std::string name = fmt::format("low-pass of {} Hz", f);
+    list.push_back({"both: " + name, low_passed({kFriction, kVelocity}, f), "bandwidth", {velocity, friction}});
+    if (f == 200 || f == 1000)
+      list.push_back({"friction: " + name, low_passed({kFriction}, f), "bandwidth", {friction}});
+    if (f == 200 || f == 500 || f == 1000)
+      list.push_back({"velocity: " + name, low_passed({kVelocity}, f), "bandwidth", {velocity}});
+  }
+  return list;
+}
+
+inline std::vector<Alteration> alterations() {
+  std::vector<Alteration> list = {
+      {"friction: five cells of -9999", cells(kFriction, -9999), "drop-outs"},
+      {"velocity: five cells of 1e38", cells(kVelocity, 1e38), "drop-outs"},
+      {"friction: five cells of 9.9E37", cells(kFriction, 9.9e37), "drop-outs"},
+      {"friction: a hundred cells of 9999", cells(kFriction, 9999, 100), "drop-outs"},
+      {"friction: lone spikes", spikes(kFriction, 0.3), "drop-outs"},
+      {"velocity: lone spikes", spikes(kVelocity, 0.04), "drop-outs"},
+      {"friction: frozen for a tenth", frozen({kFriction}), "drop-outs"},
+      {"velocity: frozen for a tenth", frozen({kVelocity}), "drop-outs"},
+      {"both: frozen for a tenth", frozen({kFriction, kVelocity}), "drop-outs"},
+      {"friction: a loose plug", loose({kFriction}), "drop-outs"},
+      {"both: a loose plug", loose({kFriction, kVelocity}), "drop-outs"},
+      {"machine stopped at the end", stopped(0.85, 1), "drop-outs"},
+      {"machine stopped at the start", stopped(0, 0.15), "drop-outs"},
+      {"friction: clipped at 0.5, dither 2e-4", clipped_friction(0.5, 2e-4), "clipping"},
+      {"friction: clipped at 0.5, dither 1e-3", clipped_friction(0.5, 1e-3), "clipping"},
+      {"friction: clipped at 0.4", clipped_friction(0.4, 2e-4), "clipping"},
+      {"velocity: clipped at 0.7, dither", clipped_velocity(0.7, 5e-6), "clipping"},
+      {"velocity: clipped at 0.95, dither", clipped_velocity(0.95, 2e-5), "clipping"},
+      {"velocity: clipped at 0.5", clipped_velocity(0.5, 0), "clipping"},
+      {"velocity: eight bits", rounded(kVelocity, 0.8e-3), "resolution"},
+      {"friction: seven bits", rounded(kFriction, 0.004), "resolution"},
+      {"friction: clipped at 0.4, dither 2e-3", clipped_friction(0.4, 2e-3), "clipping"},
+      {"friction: five bits, no sample alone", rounded(kFriction, 0.008), "resolution"},
+      {"machine stopped half way", stopped(0.4, 0.55), "drop-outs"},
+      {"velocity: zero off by 0.2 mm/s", shifted(2e-4), "plateau-speed", {{&Motion::velocity_zero, 2e-4}}},
+      {"velocity: zero off by -0.2 mm/s", shifted(-2e-4), "plateau-speed", {{&Motion::velocity_zero, -2e-4}}},
+      {"velocity: zero off by 1 mm/s", shifted(1e-3), "plateau-speed", {{&Motion::velocity_zero, 1e-3}}},
+      {"one in a hundred samples lost", lost(0.01, 1), "drop-outs"},
+      {"one in twenty samples lost", lost(0.05, 1), "drop-outs"},
+      {"one in five samples lost", lost(0.2, 1), "drop-outs"},
+      {"disc from 4 to 8 rpm", then_at(8), "plateau-speed"},
+      {"disc from 4 to 5 rpm", then_at(5), "plateau-speed"},
+      {"velocity: gain falls by 10 %", compressed(0.1), "plateau-speed", {{&Motion::compression, 0.1}}},
+      {"velocity: gain falls by 5 %", compressed(0.05), "plateau-speed", {{&Motion::compression, 0.05}}},
+      {"velocity: gain rises by 10 %", compressed(-0.1), "plateau-speed", {{&Motion::compression, -0.1}}},
+      {"clocks 50 ppm apart", clocks_apart(50), "channel-delay", {{&Motion::clock_drift, 5e-5}}},
+      {"clocks 100 ppm apart", clocks_apart(100), "channel-delay", {{&Motion::clock_drift, 1e-4}}},
+      {"clocks -200 ppm apart", clocks_apart(-200), "channel-delay", {{&Motion::clock_drift, -2e-4}}},
+  };
+  for (Alteration& low_pass : low_passes()) list.push_back(std::move(low_pass));
   return list;
 }
 
 /// Where no honest number is left: the check reports a problem.
-inline const std::vector<Alteration>& beyond_rescue() {
-  static const std::vector<Alteration> list = {
-      {"both: means of 0.25 ms", averaged({kFriction, kVelocity}, 0.25e-3), "bandwidth", "low-pass"},
-      {"both: means of 0.5 ms", averaged({kFriction, kVelocity}, 0.5e-3), "bandwidth", "low-pass"},
-      {"both: means of 1 ms", averaged({kFriction, kVelocity}, 1e-3), "bandwidth", "low-pass"},
-      {"velocity: means of 2 ms", averaged({kVelocity}, 2e-3), "bandwidth", "low-pass"},
-      {"both: second order of 500 Hz", low_passed_twice({kFriction, kVelocity}, 500), "bandwidth",
-       "second-order low-pass"},
-      {"velocity: second order of 1 kHz", low_passed_twice({kVelocity}, 1000), "bandwidth",
-       "second-order low-pass at 1"},
-      {"velocity: six bits", rounded(kVelocity, 3.2e-3), "resolution", "the law's decay (alpha) is unreliable"},
-      {"friction: twenty levels", rounded(kFriction, 0.02), "resolution",
-       "mu_k and the law's decay (alpha) are unreliable"},
-      {"one in five samples lost, 20 ms each", lost(0.2, 400), "drop-outs", "samples were lost"},
+inline std::vector<Alteration> beyond_rescue() {
+  return {
+      {"both: means of 0.25 ms", averaged({kFriction, kVelocity}, 0.25e-3), "bandwidth"},
+      {"both: means of 0.5 ms", averaged({kFriction, kVelocity}, 0.5e-3), "bandwidth"},
+      {"both: means of 1 ms", averaged({kFriction, kVelocity}, 1e-3), "bandwidth"},
+      {"velocity: means of 2 ms", averaged({kVelocity}, 2e-3), "bandwidth"},
+      {"both: second order of 500 Hz", low_passed_twice({kFriction, kVelocity}, 500), "bandwidth"},
+      {"velocity: second order of 1 kHz", low_passed_twice({kVelocity}, 1000), "bandwidth"},
+      {"velocity: six bits", rounded(kVelocity, 3.2e-3), "resolution"},
+      {"friction: twenty levels", rounded(kFriction, 0.02), "resolution"},
+      {"one in five samples lost, 20 ms each", lost(0.2, 400), "drop-outs"},
   };
-  return list;
 }
 
 }  // namespace tribofit::altered

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -38,51 +40,88 @@ Identification identified(Trace trace) {
   return out;
 }
 
-const HealthItem& item(const Identification& trace, const std::string& check) {
-  return *std::find_if(trace.motion.health.begin(), trace.motion.health.end(),
-                       [&](const HealthItem& i) { return i.check == check; });
+const HealthItem& item(const Motion& motion, const std::string& check) {
+  const auto at =
+      std::find_if(motion.health.begin(), motion.health.end(), [&](const HealthItem& i) { return i.check == check; });
+  if (at == motion.health.end()) throw std::invalid_argument("no check is called " + check);
+  return *at;
 }
 
-/// All parameters within four standard errors of the truth: there are some seventy of them.
+/// All parameters within half a per cent of the truth, and within four standard errors: there are some seventy of them.
 void expect_true(const Identification& trace, const truth::Rig& rig) {
   ASSERT_FALSE(trace.fits.empty());
   const std::vector<double> truth = {rig.static_friction, rig.kinetic_friction, rig.decay};
   for (std::size_t k = 0; k < truth.size(); ++k) {
     const FitParameter& p = trace.fits[trace.best].parameters[k];
     EXPECT_LT(std::abs(p.value - truth[k]), 4 * p.std_error) << p.parameter.name << " " << p.value;
-    EXPECT_LT(p.std_error, 0.03 * truth[k]) << p.parameter.name;
+    EXPECT_NEAR(p.value, truth[k], 0.005 * truth[k]) << p.parameter.name;
   }
+}
+
+/// Stretches that were altered take no part, and few samples else; a channel that was altered as a whole does.
+void expect_marked(const Trace& before, const Trace& after, const Motion& found) {
+  if (before.size() != after.size()) return;
+  std::size_t altered = 0, marked = 0, both = 0;
+  for (std::size_t i = found.trimmed; i < before.size(); ++i) {
+    const bool is_altered = before.friction[i] != after.friction[i] || before.velocity[i] != after.velocity[i];
+    const bool is_marked = found.has_fault(i - found.trimmed, SampleFault::any);
+    altered += is_altered ? 1U : 0U, marked += is_marked ? 1U : 0U, both += is_altered && is_marked ? 1U : 0U;
+  }
+  const bool everywhere = altered > before.size() / 2;
+  EXPECT_LT(marked - both, before.size() / 20);
+  EXPECT_TRUE(everywhere ? both < before.size() / 500 : both == altered) << both << " of " << altered;
 }
 
 class Altered : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(Altered, TheFaultIsNamedAndTheParametersStay) {
-  const Alteration& alteration = alterations()[GetParam()];
+  const Alteration alteration = alterations()[GetParam()];
   SCOPED_TRACE(alteration.name);
   const truth::Rig rig = rig_of(11);
-  Trace trace = truth::simulate(rig).trace;
+  const Trace sound = truth::simulate(rig).trace;
+  Trace altered = sound;
   Random random(GetParam());
-  alteration.apply(trace, random);
-  const Identification found = identified(std::move(trace));
-  const HealthItem& named = item(found, alteration.check);
-  EXPECT_NE(named.status, HealthItem::Status::ok);
-  EXPECT_THAT(named.message, ::testing::HasSubstr(alteration.sentence));
+  alteration.apply(altered, random);
+  const Identification found = identified(altered);
+  EXPECT_NE(item(found.motion, alteration.check).status, HealthItem::Status::ok);
+  for (const Undone& undone : alteration.undone) {
+    const UndoneDistortion& value = found.motion.*undone.found;
+    EXPECT_NEAR(value.value, undone.truth, 4 * value.std_error);
+    EXPECT_LT(value.std_error, 0.15 * std::abs(undone.truth));
+  }
+  expect_marked(sound, altered, found.motion);
   expect_true(found, rig);
+}
+
+/// Each way of computing a filter lets a sine at its corner through at 1/sqrt 2, the more exactly the finer it is
+/// sampled.
+TEST(Filters, OfAnyDiscretisationHaveTheirCorner) {
+  for (const Discretisation how :
+       {Discretisation::next_held, Discretisation::last_held, Discretisation::straight, Discretisation::bilinear}) {
+    for (const int order : {1, 2}) {
+      Trace trace;
+      for (int i = 0; i < 20000; ++i) {
+        trace.time.push_back(1e-4 * i);
+        trace.friction.push_back(std::sin(2 * std::numbers::pi * 100 * trace.time.back()));
+      }
+      Random random;
+      butterworth({kFriction}, order, 100, how)(trace, random);
+      const double gain = *std::max_element(trace.friction.begin() + 10000, trace.friction.end());
+      EXPECT_NEAR(gain, std::numbers::sqrt2 / 2, how < Discretisation::straight ? 0.03 : 0.002) << order;
+    }
+  }
 }
 
 class BeyondRescue : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(BeyondRescue, TheFaultIsAProblem) {
-  const Alteration& alteration = beyond_rescue()[GetParam()];
+  const Alteration alteration = beyond_rescue()[GetParam()];
   SCOPED_TRACE(alteration.name);
   Trace trace = truth::simulate(rig_of(11)).trace;
   Random random(GetParam());
   alteration.apply(trace, random);
   const Motion motion = compute_motion(std::move(trace));
-  const auto named = std::find_if(motion.health.begin(), motion.health.end(),
-                                  [&](const HealthItem& i) { return i.check == alteration.check; });
-  EXPECT_EQ(named->status, HealthItem::Status::problem) << named->message;
-  EXPECT_THAT(named->message, ::testing::HasSubstr(alteration.sentence));
+  EXPECT_EQ(item(motion, alteration.check).status, HealthItem::Status::problem);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BeyondRescue, ::testing::Range<std::size_t>(0, beyond_rescue().size()));
@@ -111,8 +150,8 @@ TEST(NotAltered, ShortSticksLeaveNoBias) {
       SCOPED_TRACE(std::to_string(rpm) + " rpm at " + std::to_string(rate) + " Hz");
       const Identification found = identified(truth::simulate(rig).trace);
       expect_true(found, rig);
-      EXPECT_EQ(item(found, "plateau-speed").status, HealthItem::Status::ok);
-      EXPECT_EQ(item(found, "channel-delay").status, HealthItem::Status::ok);
+      EXPECT_EQ(item(found.motion, "plateau-speed").status, HealthItem::Status::ok);
+      EXPECT_EQ(item(found.motion, "channel-delay").status, HealthItem::Status::ok);
       EXPECT_FALSE(found.motion.velocity_low_pass.any());
     }
   }
@@ -150,8 +189,6 @@ TEST(Diagnosed, NamesNoEffectWhileAProblemStands) {
     alter(trace, random);
     const DiagnosedTraces found = diagnose({{"altered", {}, std::make_shared<const Trace>(std::move(trace))}});
     EXPECT_NE(found.diagnosis.verdict, Verdict::effect_found);
-    EXPECT_THAT(found.diagnosis.messages,
-                ::testing::Contains(::testing::HasSubstr("effects that look like it are not named")));
     for (const EffectFinding& effect : found.diagnosis.effects) {
       EXPECT_NE(effect.status, EffectStatus::found) << effect.key;
       EXPECT_NE(effect.status, EffectStatus::equivalent) << effect.key;
@@ -189,25 +226,26 @@ TEST(Diagnosed, NamesWhatWasDoneToTheReadings) {
   }
 }
 
-/// Some of the long list, of which altered_benchmark runs all.
+/// Of the long list, of which altered_benchmark runs all.
+AlteredCase altered_case(const std::string& name) {
+  const std::vector<AlteredCase> all = altered_cases();
+  const auto at = std::find_if(all.begin(), all.end(), [&](const AlteredCase& one) { return one.name == name; });
+  if (at == all.end()) throw std::invalid_argument("no altered record is called " + name);
+  return *at;
+}
+
 TEST(Diagnosed, IsNotConfidentAndWrong) {
-  for (const AlteredCase& one : altered_cases()) {
-    const auto is = [&](const char* text) { return one.name.starts_with(text); };
-    const bool is_picked = is("friction: clipped at 0.45, dither 0.002") || is("velocity: zero off by 2 mm/s") ||
-                           is("5 % of samples lost, 10 each") || is("averaged in blocks of 40 (4 rpm)") ||
-                           is("load swings by 20 % in 7 s");
-    if (!is_picked) continue;
-    const Judged judged = judge(one);
-    EXPECT_NE(judged.outcome, Outcome::wrong) << one.name << judged.text;
+  for (const char* name : {"friction: clipped at 0.45, dither 0.002 (6 rpm, S = 0.05)",
+                           "velocity: zero off by 2 mm/s (2 rpm)", "5 % of samples lost, 10 each (6 rpm, S = 0.05)",
+                           "averaged in blocks of 40 (4 rpm)", "load swings by 20 % in 7 s (4 rpm)"}) {
+    const Judged judged = judge(altered_case(name));
+    EXPECT_NE(judged.outcome, Outcome::wrong) << name << judged.text;
   }
 }
 
 TEST(Diagnosed, OffersALoadThatNobodyRecorded) {
-  for (const AlteredCase& one : altered_cases()) {
-    if (one.name.starts_with("load swings by 20 % in 7 s")) {
-      EXPECT_THAT(judge(one).text, ::testing::HasSubstr("possible load-dependence"));
-    }
-  }
+  const Judged judged = judge(altered_case("load swings by 20 % in 7 s (4 rpm)"));
+  EXPECT_THAT(judged.possible, ::testing::Contains("load-dependence"));
 }
 
 /// An amplifier that follows no faster is seen in either channel.
@@ -217,33 +255,30 @@ TEST(NotAltered, OnlyASlewLimitHasOne) {
     Random random;
     slew_limited({channel}, 0.5)(trace, random);
     const Identification found = identified(std::move(trace));
-    EXPECT_EQ(item(found, "clipping").status, HealthItem::Status::problem);
-    EXPECT_THAT(item(found, "clipping").message, ::testing::HasSubstr("the slew rate of its amplifier limits it"));
+    EXPECT_EQ(item(found.motion, "clipping").status, HealthItem::Status::problem);
   }
   const Identification sound = identified(truth::simulate(rig_of(11)).trace);
-  EXPECT_EQ(item(sound, "clipping").status, HealthItem::Status::ok);
+  EXPECT_EQ(item(sound.motion, "clipping").status, HealthItem::Status::ok);
 }
 
-/// A v_r that was measured is held against rest in stick and omega r.
+/// A v_r that was measured is held against rest in stick and omega r; a zero is taken off.
 TEST(NotAltered, AMeasuredVelocityIsHeldAgainstRestAndOmegaR) {
   const truth::Rig rig = rig_of(11);
   const double disc = rig.speed() * rig.radius;
-  const auto check = [&](double gain, double zero) {
+  const auto moved = [&](double gain, double zero) {
     Trace trace = truth::simulate(rig).trace;
     trace.velocity_kind = VelocityKind::relative;
     for (double& v : trace.velocity) v = gain * (disc - v) + zero;
-    const Motion motion = compute_motion(std::move(trace));
-    return *std::find_if(motion.health.begin(), motion.health.end(),
-                         [](const HealthItem& i) { return i.check == "plateau-speed"; });
+    return compute_motion(std::move(trace));
   };
-  EXPECT_EQ(check(1, 0).status, HealthItem::Status::ok) << check(1, 0).message;
-  const HealthItem zero = check(1, 1e-3), gain = check(2, 0), block = check(-1, disc);
-  for (const HealthItem& i : {gain, block}) EXPECT_EQ(i.status, HealthItem::Status::problem) << i.message;
-  EXPECT_EQ(zero.status, HealthItem::Status::warning) << zero.message;
-  EXPECT_THAT(zero.message, ::testing::HasSubstr("the velocity has a zero error; corrected"));
-  EXPECT_EQ(check(1.05, 0).status, HealthItem::Status::warning) << check(1.05, 0).message;
-  EXPECT_THAT(gain.message, ::testing::HasSubstr("2 times the truth"));
-  EXPECT_THAT(block.message, ::testing::HasSubstr("name the column v_b"));
+  const auto status = [](const Motion& motion) { return item(motion, "plateau-speed").status; };
+  EXPECT_EQ(status(moved(1, 0)), HealthItem::Status::ok);
+  const Motion zero = moved(1, 1e-3);
+  EXPECT_EQ(status(zero), HealthItem::Status::warning);
+  EXPECT_NEAR(std::abs(zero.velocity_zero.value), 1e-3, 1e-5);
+  EXPECT_EQ(status(moved(1.05, 0)), HealthItem::Status::warning);
+  EXPECT_EQ(status(moved(2, 0)), HealthItem::Status::problem);
+  EXPECT_THAT(item(moved(-1, disc), "plateau-speed").message, ::testing::HasSubstr("name the column v_b"));
 }
 
 /// The offset between two records that begin at these times [s] and have clocks of their own.

@@ -20,20 +20,30 @@ constexpr Base kBases[] = {{"4 rpm", 4, 52.14, 3e-3, 1},       {"2 rpm", 2, 52.1
 
 class List {
  public:
+  explicit List(const AlteredOptions& all) : options(all) {}
+
+  Alter low_pass(const std::vector<Channel>& channels, double corner) const {
+    return butterworth(channels, 1, corner, options.filters.value_or(Discretisation::next_held));
+  }
+  Alter second_order(const std::vector<Channel>& channels, double corner) const {
+    return butterworth(channels, 2, corner, options.filters.value_or(Discretisation::bilinear));
+  }
   /// Twice: on the next two rigs.
   void add(const std::string& name, const Alter& apply, const std::vector<std::string>& may_name = {}) {
     for (int k = 0; k < 2; ++k) add_one(name, apply, may_name);
   }
   AlteredCase& add_one(const std::string& name, const Alter& apply, const std::vector<std::string>& may_name = {}) {
     const Base& base = kBases[next_++ % std::size(kBases)];
-    AlteredCase one{fmt::format("{} ({})", name, base.name), {}, base.slower, apply, may_name, {}, {}};
+    AlteredCase one{fmt::format("{} ({})", name, base.name), group, {}, base.slower, apply, may_name, {}, {}};
     one.rig.rpm = base.rpm, one.rig.decay = base.decay, one.rig.friction_noise = base.noise;
     one.rig.duration = 10, one.rig.scatter = 0.004;
-    one.rig.seed = 100 + static_cast<unsigned>(list.size());
+    one.rig.seed = 1000 * options.seed + 100 + static_cast<unsigned>(list.size());
     list.push_back(one);
     return list.back();
   }
+  const AlteredOptions options;
   std::vector<AlteredCase> list;
+  const char* group = "";  ///< of those that follow
 
  private:
   std::size_t next_ = 0;
@@ -62,11 +72,11 @@ std::vector<std::string> lag_too(const Which& which) {
 void add_filters(List& list) {
   for (const Which& which : both_and_each()) {
     for (const double corner : {100.0, 200.0, 300.0, 500.0, 1000.0, 2000.0, 3000.0})
-      list.add_one(fmt::format("{}: low-pass of {} Hz", which.name, corner), low_passed(which.channels, corner),
+      list.add_one(fmt::format("{}: low-pass of {} Hz", which.name, corner), list.low_pass(which.channels, corner),
                    which.effects);
     for (const double corner : {200.0, 500.0, 1000.0, 2000.0})
       list.add_one(fmt::format("{}: second order of {} Hz", which.name, corner),
-                   low_passed_twice(which.channels, corner), which.effects);
+                   list.second_order(which.channels, corner), which.effects);
     for (const double ms : {0.25, 0.5, 1.0, 2.0})
       list.add_one(fmt::format("{}: centred means of {} ms", which.name, ms), averaged(which.channels, 1e-3 * ms),
                    which.effects);
@@ -82,13 +92,13 @@ void add_filters(List& list) {
   }
   for (const auto& [friction, velocity] : {std::pair{200.0, 500.0}, {1000.0, 300.0}, {500.0, 2000.0}})
     list.add_one(fmt::format("friction: low-pass of {} Hz, velocity: of {} Hz", friction, velocity),
-                 all_of({low_passed({kFriction}, friction), low_passed({kVelocity}, velocity)}),
+                 all_of({list.low_pass({kFriction}, friction), list.low_pass({kVelocity}, velocity)}),
                  {"force-bandwidth", "velocity-bandwidth"});
   for (const std::size_t count : {4U, 10U, 20U, 40U})
     list.add(fmt::format("averaged in blocks of {}", count), block_means(count));
   for (const double corner : {300.0, 1000.0}) {
     AlteredCase& one = list.add_one(fmt::format("velocity: low-pass of {} Hz, stated", corner),
-                                    low_passed({kVelocity}, corner), {"velocity-bandwidth"});
+                                    list.low_pass({kVelocity}, corner), {"velocity-bandwidth"});
     one.instruments.vibrometer.low_pass = Declared{corner / one.slower, 0};
   }
 }
@@ -132,6 +142,7 @@ void add_levels_and_clocks(List& list) {
   for (const double rpm : {2.0, 5.0, 8.0}) {
     AlteredCase& one = list.add_one(fmt::format("then at {} rpm", rpm), then_at(rpm));
     one.rig = {}, one.slower = 1;
+    one.rig.seed += 1000 * list.options.seed;
     one.rig.duration = 10, one.rig.scatter = 0.004;
   }
   for (const double factor : {0.5, 1.05, 2.0, -1.0})
@@ -177,12 +188,12 @@ void add_other_recorders(List& list) {
   for (const Which& which : both_and_each()) {
     for (const double corner : {150.0, 400.0, 1500.0})
       list.add_one(fmt::format("{}: fourth order of {} Hz", which.name, corner),
-                   all_of({low_passed_twice(which.channels, corner), low_passed_twice(which.channels, corner)}),
+                   all_of({list.second_order(which.channels, corner), list.second_order(which.channels, corner)}),
                    lag_too(which));
     for (const std::size_t half : {1U, 3U, 10U})
       list.add_one(fmt::format("{}: running median of {}", which.name, 2 * half + 1),
                    running_median(which.channels, half), which.effects);
-    list.add_one(fmt::format("{}: low-pass of 60 Hz", which.name), low_passed(which.channels, 60), which.effects);
+    list.add_one(fmt::format("{}: low-pass of 60 Hz", which.name), list.low_pass(which.channels, 60), which.effects);
   }
   for (const double part : {1e-4, 1e-3, 1e-2})
     list.add(fmt::format("velocity: speckle lost over {} %", 100 * part), speckled(part));
@@ -207,14 +218,16 @@ void add_other_recorders(List& list) {
 
 }  // namespace
 
-std::vector<AlteredCase> altered_cases() {
-  List list;
-  add_filters(list);
-  add_limits(list);
-  add_levels_and_clocks(list);
-  add_faults(list);
-  add_loads(list);
-  add_other_recorders(list);
+std::vector<AlteredCase> altered_cases(const AlteredOptions& options) {
+  List list(options);
+  constexpr std::pair<const char*, void (*)(List&)> kGroups[] = {
+      {"filters, means and slew limits", add_filters}, {"clipping, steps, gain that falls", add_limits},
+      {"zero, gain and clock", add_levels_and_clocks}, {"markers, spikes, frozen, stopped", add_faults},
+      {"loads that nobody recorded", add_loads},       {"other recorders", add_other_recorders}};
+  for (const auto& [group, add] : kGroups) {
+    list.group = group;
+    add(list);
+  }
   return list.list;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,7 @@ struct UnrecordedLoad {
 
 /// A record of known truth and what was done to it.
 struct AlteredCase {
-  std::string name;
+  std::string name, group;
   truth::Rig rig;
   double slower = 1;  ///< the same record of a rig so many times slower
   Alter apply;
@@ -31,13 +32,20 @@ enum class Outcome { right, named, refused, wrong };
 
 struct Judged {
   Outcome outcome = Outcome::wrong;
-  std::string text;    ///< what was off, and what was said
-  bool strict = true;  ///< every parameter within three standard errors
+  std::string text;                        ///< what was off, and what was said
+  bool strict = true;                      ///< every parameter within three standard errors
+  int inside = 0;                          ///< of the three parameters, within their 95 % intervals
+  std::vector<std::string> possible = {};  ///< effects that are said to be possible
   double seconds = 0;
 };
 
+struct AlteredOptions {
+  unsigned seed = 0;                           ///< other noise and scatter for other seeds
+  std::optional<Discretisation> filters = {};  ///< of the low-pass filters, in place of those that kinematics/ undoes
+};
+
 /// More than two hundred, every kind in several strengths, on several rigs.
-std::vector<AlteredCase> altered_cases();
+std::vector<AlteredCase> altered_cases(const AlteredOptions& options = {});
 
 /// Diagnoses it. A parameter is right within three standard errors or two per cent.
 Judged judge(const AlteredCase& what);

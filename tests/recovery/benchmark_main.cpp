@@ -2,16 +2,41 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
-#include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "hidden_effects.hpp"
+#include "hidden_recipes.hpp"
+#include "hidden_tables.hpp"
+
+namespace recovery {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Name, added, equivalent)
+
+void to_json(nlohmann::json& j, const Recovered& p) {
+  j = {{"effect", p.key},  {"name", p.parameter},      {"truth", p.truth},
+       {"value", p.value}, {"std_error", p.std_error}, {"ci95", {p.lower95, p.upper95}}};
+}
+
+/// What is no number is written as null.
+void from_json(const nlohmann::json& j, Recovered& p) {
+  const auto number = [](const nlohmann::json& x) { return x.is_number() ? x.get<double>() : NAN; };
+  p = {j.at("effect"),           j.at("name"),
+       number(j.at("truth")),    number(j.at("value")),
+       number(j.at("ci95")[0]),  number(j.at("ci95")[1]),
+       number(j.at("std_error"))};
+}
+
+}  // namespace recovery
 
 namespace {
 
@@ -22,6 +47,7 @@ struct Options {
   PlanOptions plan;
   std::vector<std::string> kinds;
   std::size_t records = 20;
+  std::optional<std::size_t> empty;
   std::string only, one, json_path;
   int threads = 0;
   bool quiet = false, experiments = true, asked = false, coverage = false, known = false, only_known = false,
@@ -49,22 +75,8 @@ std::string line(const Outcome& o) {
                      o.last, o.floor, o.seconds);
 }
 
-json to_json(const std::vector<Recovered>& parameters) {
-  json all = json::array();
-  for (const Recovered& p : parameters) {
-    all.push_back({{"effect", p.key},
-                   {"name", p.parameter},
-                   {"truth", p.truth},
-                   {"value", p.value},
-                   {"std_error", p.std_error},
-                   {"ci95", {p.lower95, p.upper95}}});
-  }
-  return all;
-}
-
-json to_json(const Outcome& o) {
-  json named = json::array(), hidden = json::array();
-  for (const Name& name : o.names) named.push_back({{"added", name.added}, {"equivalent", name.equivalent}});
+json json_of(const Outcome& o) {
+  json hidden = json::array();
   for (const Ingredient& what : o.tested.hidden) hidden.push_back({{"key", what.key}, {"values", what.values}});
   return {{"case", o.tested.name},
           {"kind", to_string(o.tested.kind)},
@@ -78,7 +90,8 @@ json to_json(const Outcome& o) {
           {"noise_flicker", o.tested.flicker},
           {"scatter", o.tested.scatter},
           {"wander", o.tested.wander},
-          {"named", named},
+          {"named", o.names},
+          {"after", o.after},
           {"naming", to_string(o.naming)},
           {"right", o.right},
           {"verdict", tribofit::to_string(o.verdict)},
@@ -88,28 +101,62 @@ json to_json(const Outcome& o) {
           {"status", o.status},
           {"next_experiment", o.experiment},
           {"partners", o.partners},
-          {"after", names(o.after)},
           {"split", o.split},
           {"held_out_rmse", {o.first, o.last}},
           {"floor_rmse", o.floor},
-          {"parameters", to_json(o.parameters)},
-          {"parameters_where_known", to_json(o.known)},
+          {"parameters", o.parameters},
+          {"parameters_of_law", o.of_law},
+          {"parameters_where_known", o.known},
           {"seconds", o.seconds},
           {"failure", o.failure}};
 }
 
-void write(const std::string& path, const std::vector<Outcome>& outcomes) {
-  json all = json::array();
-  for (const Outcome& o : outcomes) all.push_back(to_json(o));
-  const std::string unfinished = path + ".part";
-  std::ofstream(unfinished) << all.dump(1) << '\n';
-  std::filesystem::rename(unfinished, path);
+Outcome outcome_from(const Case& c, const json& j) {
+  Outcome o;
+  o.tested = c;
+  o.names = j.at("named").get<std::vector<Name>>();
+  o.after = j.at("after").get<std::vector<Name>>();
+  using tribofit::Verdict;
+  for (int k = 0; k <= static_cast<int>(Verdict::unfinished); ++k) {
+    if (j.at("verdict") == to_string(static_cast<Verdict>(k))) o.verdict = static_cast<Verdict>(k);
+  }
+  o.law = tribofit::make_law(j.at("law_found").get<std::string>());
+  j.at("remaining").get_to(o.remaining);
+  j.at("remaining_share").get_to(o.remaining_share);
+  j.at("status").get_to(o.status);
+  j.at("partners").get_to(o.partners);
+  j.at("split").get_to(o.split);
+  o.first = j.at("held_out_rmse")[0], o.last = j.at("held_out_rmse")[1];
+  j.at("floor_rmse").get_to(o.floor);
+  j.at("parameters").get_to(o.parameters);
+  j.at("parameters_of_law").get_to(o.of_law);
+  j.at("parameters_where_known").get_to(o.known);
+  j.at("seconds").get_to(o.seconds);
+  j.at("failure").get_to(o.failure);
+  judge(o);
+  return o;
+}
+
+/// Outcomes of cases of this plan that stand in a file of an earlier run, each in a line; the cases are taken from the
+/// plan.
+std::vector<Outcome> take_known(const std::string& path, std::vector<Case>& cases) {
+  std::vector<Outcome> known;
+  std::ifstream file(path);
+  for (std::string text; std::getline(file, text);) {
+    const json j = json::parse(text, nullptr, false);
+    if (j.is_discarded()) continue;  // the last one, where the run was stopped
+    const auto at = std::find_if(cases.begin(), cases.end(), [&](const Case& c) { return j.at("case") == c.name; });
+    if (at == cases.end() || j.at("seed") != at->seed) continue;
+    known.push_back(outcome_from(*at, j));
+    cases.erase(at);
+  }
+  return known;
 }
 
 /// One case in full, as a user would see it.
 void explain(const Case& c) {
   const Outcome outcome = run_case(c, {.experiments = true});
-  fmt::print("{}\n{}\n", line(outcome), to_json(outcome).dump(1));
+  fmt::print("{}\n{}\n", line(outcome), json_of(outcome).dump(1));
   const auto diagnosed = diagnose_case(simulate_case(c)).diagnosis;
   for (const auto& finding : diagnosed.effects) {
     fmt::print("{:<24} {:<12} error {:.5f}, takes away {:.3f}, p {:.2g}; {}\n", finding.key,
@@ -134,7 +181,16 @@ std::vector<Case> plan(Options options) {
   if (options.kinds.empty() && !options.asked) return plan_cases(options.plan);
   if (!options.kinds.empty() && options.kinds.front() == "all") options.kinds.clear();
   if (options.asked) return plan_asked_of_sliding(options.kinds, options.records, options.plan.seed);
-  return plan_record_kinds(options.kinds, options.records, options.records, options.plan.seed);
+  const std::size_t empty = options.empty.value_or(options.records);
+  return plan_record_kinds(options.kinds, empty, options.empty ? 0 : options.records, options.plan.seed);
+}
+
+void in_order_of(const std::vector<Case>& plan, std::vector<Outcome>& outcomes) {
+  std::map<std::string, std::size_t> places;
+  for (const Case& c : plan) places.emplace(c.name, places.size());
+  std::stable_sort(outcomes.begin(), outcomes.end(), [&](const Outcome& a, const Outcome& b) {
+    return places.at(a.tested.name) < places.at(b.tested.name);
+  });
 }
 
 int run(const Options& options) {
@@ -160,19 +216,34 @@ int run(const Options& options) {
   const RunOptions run_options = {.experiments = options.experiments,
                                   .known = options.known || options.only_known,
                                   .diagnose = !options.only_known};
-  const auto outcomes = run_cases(cases, options.threads, run_options, [&](const Outcome& o, std::size_t done) {
-    if (!options.quiet) fmt::print(stderr, "{}/{} {}\n", done, cases.size(), line(o));
-  });
-  if (!options.json_path.empty()) write(options.json_path, outcomes);
+  std::vector<Outcome> outcomes = take_known(options.json_path, cases);
+  // In any order, so that what a run has done until it is stopped stands for all.
+  std::stable_sort(cases.begin(), cases.end(),
+                   [](const Case& a, const Case& b) { return hash(a.name, 0) < hash(b.name, 0); });
+  std::ofstream json_lines(options.json_path, std::ios::app);
+  for (Outcome& outcome : run_cases(cases, options.threads, run_options, [&](const Outcome&o, std::size_t done) {
+         if (!options.quiet) fmt::print(stderr, "{}/{} {}\n", done, cases.size(), line(o));
+         json_lines << json_of(o).dump() << std::endl;
+       })) {
+    outcomes.push_back(std::move(outcome));
+  }
+  in_order_of(plan(options), outcomes);
   if (options.coverage || options.only_known) fmt::print("{}\n", coverage_table(outcomes));
   if (options.only_known) return 0;
   if (options.kinds.empty() && !options.asked) {
     fmt::print("{}", tables(outcomes));
     return 0;
   }
-  fmt::print("{}\n", options.asked ? groups_table(outcomes) : record_kinds_table(outcomes));
+  const Outcomes empties = of_kind(outcomes, Kind::nothing);
+  Outcomes others;
   for (const Outcome& o : outcomes) {
-    if (!o.right) fmt::print("{}\n", line(o));
+    if (o.tested.kind != Kind::nothing) others.push_back(&o);
+  }
+  if (!empties.empty()) fmt::print("{}\n", empties_table(empties));
+  if (!others.empty()) fmt::print("{}\n", groups_table(others));
+  for (const Outcome& o : outcomes) {
+    const bool is_quiet = o.tested.kind == Kind::nothing && o.names.empty() && o.failure.empty();
+    if (!o.right && !is_quiet) fmt::print("- {}\n", line(o));
   }
   return 0;
 }
@@ -197,6 +268,7 @@ int main(int argc, char** argv) {
       ->delimiter(',');
   app.add_option("--records", options.records, "of each kind: so many with nothing hidden, and so many with an effect")
       ->capture_default_str();
+  app.add_option("--empty", options.empty, "of each kind: only so many with nothing hidden");
   app.add_flag("--asked", options.asked,
                "of each kind of sliding: viscous, drift, asymmetry, a logarithmic law, and Stribeck curves with "
                "viscous friction");
@@ -209,7 +281,8 @@ int main(int argc, char** argv) {
       "--only", options.only,
       "only cases whose name holds this (or one of these, with ; between), e.g. runout, 'drift=', nothing, +, ~");
   app.add_option("--case", options.one, "one case by name, in full");
-  app.add_option("--json", options.json_path, "write every case to this file");
+  app.add_option("--json", options.json_path,
+                 "a line for each case; those that stand there from an earlier run are not run again");
   app.add_option("--threads", options.threads, "0: as many as there are; results do not depend on it");
   app.add_flag("!--no-experiments", options.experiments, "do not simulate the next experiment where a group was named");
   app.add_flag("--quiet", options.quiet, "no line for each case");

@@ -92,7 +92,6 @@ std::string export_readme(std::size_t records, std::uint64_t seed) {
       "|\n|---|---|---|---|\n";
   for (const Effect& effect : effect_catalogue()) {
     const EffectInfo info = describe(effect);
-    if (info.hidden.sizes.empty()) continue;
     text += fmt::format("| `{}` | {} | {} | {} |\n", info.key, info.statement, info.equation,
                         parameter_list(info.parameters));
   }

@@ -66,36 +66,15 @@ ExportedRecord empty_record(const Small& small, const char* kind, const Law& law
   return out;
 }
 
-/// A table of friction over speed, in both directions: 60 speeds in equal ratios from 0.5 to 200 mm/s each.
 ExportedRecord points(const Small& small, std::uint64_t seed) {
-  constexpr std::size_t kSpeeds = 60;
-  constexpr double kNoise = 0.003, kSlowest = 0.5e-3, kFastest = 0.2;
+  constexpr double kNoise = 0.003;
   Random random(hash(small.name, seed));
   const Law law = random.below(2) == 0 ? Law(ExponentialLaw{}) : Law(FractionalLaw{});
   std::vector<double> p = {random.uniform(0.45, 0.53), random.uniform(0.3, 0.36), random.uniform(40, 80)};
   const FrictionModel model = model_of(small, law, p);
   ExportedRecord out = empty_record(small, "points", law, p);
-  Trace trace;
-  trace.kind = RecordKind::points;
-  trace.velocity_kind = VelocityKind::relative;
-  for (const double sign : {1.0, -1.0}) {
-    for (std::size_t k = 0; k < kSpeeds; ++k) {
-      const double v = sign * kSlowest * std::pow(kFastest / kSlowest, static_cast<double>(k) / (kSpeeds - 1.0));
-      const double time[] = {-1, 0}, speed[] = {v, v};
-      double mu[2];
-      Slip slip;
-      slip.time = time;
-      slip.velocity = speed;
-      slip.direction = sign;
-      evaluate<double>(model, p.data(), slip, slip.velocity, mu);
-      trace.time.push_back(static_cast<double>(trace.time.size()));
-      trace.velocity.push_back(v);
-      trace.friction.push_back(mu[1] + kNoise * random.normal());
-    }
-  }
-  trace.steps = {{0, trace.size(), "", {}}};
   out.floor_rmse = kNoise;
-  out.traces = {std::make_shared<const Trace>(std::move(trace))};
+  out.traces = {std::make_shared<const Trace>(steady_points(model, p, kNoise, random))};
   return out;
 }
 
@@ -160,8 +139,10 @@ std::vector<RecordMaker> plan_export(const ExportOptions& options) {
   plan.largest_only = true;
   plan.seed = options.seed;
   std::vector<Case> cases = plan_cases(plan);
+  std::vector<std::string> names = record_kinds();
+  std::erase(names, "points");  // small_points() are exported
   const std::vector<Case> kinds =
-      plan_record_kinds({}, options.of_each_kind, 2 * options.of_each_kind, options.seed + 1);
+      plan_record_kinds(names, options.of_each_kind, 2 * options.of_each_kind, options.seed + 1);
   cases.insert(cases.end(), kinds.begin(), kinds.end());
   if (!options.whole) cases = halved(std::move(cases));
   std::vector<std::pair<std::uint64_t, RecordMaker>> all;

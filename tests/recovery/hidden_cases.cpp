@@ -8,6 +8,7 @@
 #include <random>
 #include <tuple>
 
+#include "../kinematics/stick_slip_truth.hpp"
 #include "hidden_effects.hpp"
 #include "hidden_recipes.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
@@ -178,12 +179,6 @@ SimulatedRecording hide_in(const Case& c, const Run& run, const Model& truth, st
 
 }  // namespace
 
-std::uint64_t hash(std::string_view text, std::uint64_t seed) {
-  std::uint64_t h = 0xcbf29ce484222325u ^ (seed * 0x9e3779b97f4a7c15u);
-  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return h;
-}
-
 Case draw_case(std::string group, std::size_t number, Kind kind, Setting setting, std::uint64_t seed, Random& random) {
   Case c;
   c.name = fmt::format("{}:{}", group, number);
@@ -239,7 +234,7 @@ namespace {
 template <class Add>
 void plan_together(const PlanOptions& options, const Add& add) {
   const auto hide = [](Case& c, Random& random, const char* key, double size) {
-    c.hidden.push_back(ingredient(recipe(key).effect, size, random));
+    c.hidden.push_back(ingredient(recipe(key), size, random));
   };
   for (const Pair& pair : kPairs) {
     add(fmt::format("{}+{}", pair.a, pair.b), options.pairs, Kind::pair, pair.setting, [&](Case& c, Random& random) {
@@ -271,11 +266,11 @@ std::vector<Case> plan_cases(const PlanOptions& options) {
   };
   for (const Recipe& r : recipes()) {
     const char* suffix = r.setting == Setting::pauses ? "-pauses" : "";
-    for (const double size : r.effect.hidden.sizes) {
-      if (options.largest_only && size != r.effect.hidden.sizes.back()) continue;
+    for (const double size : r.hidden.sizes) {
+      if (options.largest_only && size != r.hidden.sizes.back()) continue;
       add(fmt::format("{}{}={:g}", r.effect.key, suffix, size), options.runs, Kind::single, r.setting,
           [&](Case& c, Random& random) {
-            c.hidden = {ingredient(r.effect, size, random)};
+            c.hidden = {ingredient(r, size, random)};
             if (r.programme != Programme::stick_slip) hide_in_sliding(c, r.programme);
           });
     }
@@ -298,14 +293,13 @@ std::vector<Case> plan_cases(const PlanOptions& options) {
     });
   }
   add("ageing-at-one-speed", options.unknowable, Kind::unknowable, Setting::fast,
-      [&](Case& c, Random& random) { c.hidden = {ingredient(recipe(Ageing::key).effect, 0.012, random)}; });
+      [&](Case& c, Random& random) { c.hidden = {ingredient(recipe(Ageing::key), 0.012, random)}; });
   for (const auto& pair : look_alike_pairs()) {
     for (const auto& [key, partner] : {pair, {pair.second, pair.first}}) {
       const Recipe& r = recipe(key);
       add(fmt::format("{}~{}", key, partner), options.look_alikes, Kind::look_alike, r.setting,
           [&, &p = partner](Case& c, Random& random) {
-            const std::vector<double>& sizes = r.effect.hidden.sizes;
-            c.hidden = {ingredient(r.effect, sizes[random.below(sizes.size())], random)};
+            c.hidden = {ingredient(r, random)};
             if (r.programme != Programme::stick_slip) hide_in_sliding(c, r.programme);
             c.partner = p;
           });
@@ -316,17 +310,20 @@ std::vector<Case> plan_cases(const PlanOptions& options) {
 
 namespace {
 
+void add_flicker(Trace& trace, Random& random) {
+  const std::vector<double> noise = flicker_noise(trace.size(), random);
+  for (std::size_t i = 0; i < noise.size(); ++i) trace.friction[i] += kFrictionNoise * noise[i];
+}
+
 /// What the sensors do not know of: noise as 1/f; a block that is held still and not looked at; a slower rig.
 void finish(const Case& c, const SimulatedMotion& motion, Trace& trace, std::uint64_t seed) {
-  if (c.flicker) {
-    Random random(seed);
-    const std::vector<double> noise = flicker_noise(trace.size(), random);
-    for (std::size_t i = 0; i < noise.size(); ++i) trace.friction[i] += kFrictionNoise * noise[i];
-  }
+  Random random(seed);
+  if (c.flicker) add_flicker(trace, random);
   if (c.programme != Programme::stick_slip) {
     // A sample within the millisecond in which the spring turns round is not of the law.
     for (std::size_t i = 1; i < trace.size(); ++i) {
-      if (motion.sticks[i] != 0) trace.friction[i] = std::copysign(trace.friction[i - 1], trace.disc_speed[i]);
+      const bool turns = motion.sticks[i] != 0 && !trace.disc_speed.empty() && trace.disc_speed[i] != 0;
+      if (turns) trace.friction[i] = std::copysign(trace.friction[i - 1], trace.disc_speed[i]);
     }
     trace.velocity.clear();
     trace.velocity_kind = VelocityKind::fixed_block;
@@ -341,9 +338,35 @@ void finish(const Case& c, const SimulatedMotion& motion, Trace& trace, std::uin
 
 }  // namespace
 
+/// A record whose level of friction scatters from cycle to cycle.
+Trace scattered_levels(const Case& c) {
+  truth::Rig rig;
+  rig.mass = c.rig.mass, rig.stiffness = c.rig.stiffness;
+  rig.zeta = c.rig.damping / (2 * std::sqrt(c.rig.mass * c.rig.stiffness));
+  rig.load = c.load, rig.radius = c.radius, rig.rpm = c.speed / kRpm;
+  rig.static_friction = c.friction[0], rig.kinetic_friction = c.friction[1], rig.decay = c.friction[2];
+  rig.fractional = c.law == Law(FractionalLaw{});
+  std::tie(rig.duration, rig.rate) = duration_and_rate(c.setting);
+  rig.duration *= c.length;
+  rig.noise_correlation = c.colour;
+  if (c.flicker) rig.friction_noise = 0;
+  rig.level_scatter = c.level_scatter, rig.wander = c.wander;
+  rig.seed = static_cast<unsigned>(c.seed);
+  return truth::simulate(rig).trace;
+}
+
 /// A slow rig is simulated as that of [D], of which its record is an exact image.
 Simulated simulate_case(const Case& c, const Experiment& more) {
   const Model truth = true_model(c);
+  if (c.programme == Programme::points || c.level_scatter > 0) {
+    const bool is_points = c.programme == Programme::points;
+    Random random(c.seed ^ 0x94d049bb133111ebu);
+    Trace trace =
+        is_points ? steady_points(truth.model, truth.p, c.noise * kFrictionNoise, random) : scattered_levels(c);
+    if (c.flicker && !is_points) add_flicker(trace, random);
+    trace.path = c.name;
+    return {truth.model, truth.p, {std::make_shared<const Trace>(std::move(trace))}, 0, {}};
+  }
   const Case at_home = slowed(c, 1 / c.slowness);
   const Model simulated = true_model(at_home);
   std::vector<Run> runs = {{.setting = c.setting}};

@@ -1,7 +1,6 @@
 #include "hidden_effects.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/beta.hpp>
 #include <cmath>
 #include <ctime>
 #include <exception>
@@ -34,7 +33,7 @@ std::size_t size_of(const Name& name) {
 }
 
 /// Which of the names hold what was hidden; each name is used once.
-Naming judge(const Case& c, Outcome& out) {
+Naming naming_of(const Case& c, Outcome& out) {
   std::vector<bool> used(out.names.size(), false);
   std::size_t hits = 0;
   bool alone = true;
@@ -82,7 +81,17 @@ Recovered recovered(const Ingredient& what, std::size_t k, const FitParameter& p
           p.lower95 / unit, p.upper95 / unit, p.std_error / unit};
 }
 
-void compare_parameters(const Diagnosis& diagnosis, Outcome& out) {
+void compare_parameters(const DiagnosedTraces& diagnosed, Outcome& out) {
+  const Diagnosis& diagnosis = diagnosed.diagnosis;
+  if (diagnosis.law == out.tested.law && !diagnosed.rungs.empty()) {
+    const std::vector<double>& truth = out.tested.friction;
+    for (const FitParameter& p : diagnosed.rungs.back().parameters) {
+      if (!p.effect.empty() || out.of_law.size() >= truth.size()) break;
+      const double unit = p.parameter.si;
+      out.of_law.push_back({std::string(to_string(diagnosis.law)), p.parameter.name, truth[out.of_law.size()] / unit,
+                            p.value / unit, p.lower95 / unit, p.upper95 / unit, p.std_error / unit});
+    }
+  }
   for (const Ingredient& what : out.tested.hidden) {
     const EffectFinding* found = finding(diagnosis, what.key);
     if (found == nullptr || found->status != EffectStatus::found) continue;
@@ -144,6 +153,11 @@ double processor_time() {
 std::string_view to_string(Naming naming) {
   constexpr std::string_view kNames[] = {"alone", "group", "beside", "partly", "wrong", "missed"};
   return kNames[static_cast<std::size_t>(naming)];
+}
+
+void judge(Outcome& out) {
+  out.naming = naming_of(out.tested, out);
+  out.right = is_right(out);
 }
 
 std::vector<Name> names_of(const Diagnosis& diagnosis) {
@@ -252,9 +266,8 @@ Outcome run_case(const Case& c, const RunOptions& options) {
       out.last = diagnosis.ladder.back().held_out_rmse;
     }
     out.floor = true_error(simulated, diagnosed);
-    out.naming = judge(c, out);
-    out.right = is_right(out);
-    compare_parameters(diagnosis, out);
+    judge(out);
+    compare_parameters(diagnosed, out);
     if (options.experiments && c.kind == Kind::single && out.naming == Naming::group) try_experiment(c, out);
     if (options.experiments && c.kind == Kind::look_alike) {
       try_pair(c, out);
@@ -277,12 +290,6 @@ std::vector<Outcome> run_cases(const std::vector<Case>& cases, int threads, cons
     if (done) done(outcomes[i], ++count);
   });
   return outcomes;
-}
-
-double upper_bound_95(std::size_t hits, std::size_t n) {
-  if (hits >= n) return 1;
-  const boost::math::beta_distribution<double> beta(static_cast<double>(hits) + 1, static_cast<double>(n - hits));
-  return boost::math::quantile(beta, 0.95);
 }
 
 }  // namespace recovery

@@ -41,10 +41,13 @@ enum class Programme {
   stick_slip,  ///< as the setting says, on a rig that sticks and slips
   // Speed-controlled sliding, 60 s at 200 Hz: a rig too stiff to stick, the block at rest, the speed of the disc
   // recorded.
-  steps,     ///< twelve speeds of 5 s between 1.5 and 90 mm/s
-  ramps,     ///< up and down between 5 and 85 mm/s in straight lines
-  sines,     ///< as sines
-  reversals  ///< sines about zero, up to 90 mm/s
+  steps,      ///< twelve speeds of 5 s between 1.5 and 90 mm/s
+  ramps,      ///< up and down between 5 and 85 mm/s in straight lines
+  sines,      ///< as sines
+  reversals,  ///< sines about zero, up to 90 mm/s
+  strokes,    ///< forth and back at speeds of 10 to 90 mm/s with dwells between them
+  constant,   ///< one speed of 9 to 90 mm/s
+  points      ///< steady friction at 60 speeds in each direction, no record over time
 };
 
 /// What a case is meant to show.
@@ -79,12 +82,14 @@ struct Case {
   tribofit::Law law = tribofit::ExponentialLaw{};
   std::vector<double> friction = {0, 0, 0};  ///< parameters of the law [SI]
   tribofit::Rig rig;
-  double radius = 0;     ///< [m]
-  double speed = 0;      ///< [rad/s]
-  double load = 0;       ///< [N]
-  double colour = 0;     ///< AR(1) coefficient of the noise
-  bool flicker = false;  ///< noise of friction with a spectrum as 1/f instead
-  double scatter = 0, wander = 0;
+  double radius = 0;               ///< [m]
+  double speed = 0;                ///< [rad/s]
+  double load = 0;                 ///< [N]
+  double colour = 0;               ///< AR(1) coefficient of the noise
+  bool flicker = false;            ///< noise of friction with a spectrum as 1/f instead
+  double scatter = 0, wander = 0;  ///< of mu_s from cycle to cycle [1], its correlation
+  double level_scatter = 0;        ///< of all friction of a cycle, as a part of it; then the truth of tests/kinematics
+                                   ///< is integrated instead of the library's rig
   std::uint64_t seed = 0;
   std::string record_kind;  ///< of plan_record_kinds(); empty in the others
   Programme programme = Programme::stick_slip;
@@ -116,7 +121,8 @@ std::vector<Case> halved(std::vector<Case> cases);
 std::vector<std::string> record_kinds();
 
 /// Of each of these kinds (all of them: empty) `empty` records with nothing hidden and `loaded` ones that walk through
-/// the effects which the kind can show, in all their sizes. Throws std::invalid_argument for an unknown kind.
+/// the effects which the kind can show, in all their sizes (none: no such records). Throws std::invalid_argument for an
+/// unknown kind.
 std::vector<Case> plan_record_kinds(const std::vector<std::string>& kinds, std::size_t empty, std::size_t loaded,
                                     std::uint64_t seed = 1);
 
@@ -216,6 +222,7 @@ struct Outcome {
   double first = 0, last = 0, floor = 0;  ///< held-out error of the base law and of the last rung; see Simulated [1]
   std::vector<Recovered> parameters;      ///< main parameters of hidden effects that were added
   std::vector<Recovered> known;           ///< the same, all of them, where law and effects are known; if asked for
+  std::vector<Recovered> of_law;          ///< of the true law, where it was chosen
   std::vector<std::string> partners;      ///< that the experiment is to distinguish it from; empty: none was made
   std::vector<Name> after;                ///< names after the experiment
   bool split = false;                     ///< it is named apart from all of them then
@@ -228,6 +235,9 @@ struct RunOptions {
   bool known = false;        ///< the fit with law and effects known is made too
   bool diagnose = true;      ///< false: only that
 };
+
+/// Sets naming, group_size and right from what was named.
+void judge(Outcome& out);
 
 /// Simulates, diagnoses on one thread and judges. Never throws: what is thrown is in `failure`.
 Outcome run_case(const Case& c, const RunOptions& options = {});
@@ -242,15 +252,9 @@ std::vector<Outcome> run_cases(const std::vector<Case>& cases, int threads, cons
 /// The tables of data/validation/hidden-effects.md, as Markdown.
 std::string tables(const std::vector<Outcome>& outcomes);
 
-/// False alarms, names and intervals of each kind of record, as Markdown.
-std::string record_kinds_table(const std::vector<Outcome>& outcomes);
-
 /// How often intervals of the effects that were named hold the truth: by the number of effects hidden, by noise, by
 /// parameter, and overall, as Markdown.
 std::string coverage_table(const std::vector<Outcome>& outcomes);
-
-/// How often each group of cases was named, as Markdown.
-std::string groups_table(const std::vector<Outcome>& outcomes);
 
 /// A case fitted with the law and the effects it was made with (those of friction), started at the truth.
 struct KnownFit {
@@ -259,8 +263,5 @@ struct KnownFit {
 };
 /// What the fit does where nothing had to be found first.
 KnownFit fit_known(const Simulated& simulated);
-
-/// Upper end of the one-sided 95 % interval of a rate after `hits` in `n` (Clopper-Pearson).
-double upper_bound_95(std::size_t hits, std::size_t n);
 
 }  // namespace recovery

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "hidden_recipes.hpp"
+#include "rates.hpp"
 #include "tribofit/friction/effect_pairs.hpp"
 #include "tribofit/friction/effects/all.hpp"
 
@@ -51,11 +52,33 @@ std::vector<Case> slice(Kind kind, const PlanOptions& options) {
 constexpr PlanOptions kSlice = {
     .runs = 1, .pairs = 0, .nothing = 10, .aliens = 2, .unknowable = 1, .largest_only = true};
 
+/// Sizes and draws lie within the bounds of the parameters, the least effect first.
 TEST(HiddenEffects, EveryEffectOfTheCatalogueIsInTheBenchmark) {
-  std::set<std::string> hidden;
-  for (const Case& c : slice(Kind::single, kSlice)) hidden.insert(c.hidden[0].key);
+  std::set<std::string> planned;
+  for (const Case& c : slice(Kind::single, kSlice)) planned.insert(c.hidden[0].key);
+  const auto within = [](const tribofit::Parameter& p, double value) { return p.lower <= value && value <= p.upper; };
   for (const tribofit::Effect& effect : tribofit::effect_catalogue()) {
-    EXPECT_EQ(hidden.count(tribofit::describe(effect).key), 1u) << tribofit::describe(effect).key;
+    const tribofit::EffectInfo info = describe(effect);
+    SCOPED_TRACE(info.key);
+    EXPECT_EQ(planned.count(info.key), 1u);
+    const HiddenCases& cases = hidden_cases(info.key);
+    ASSERT_FALSE(cases.sizes.empty());
+    ASSERT_EQ(cases.others.size() + 1, info.parameters.size());
+    const tribofit::Parameter& first = info.parameters[0];
+    for (std::size_t k = 0; k < cases.sizes.size(); ++k) {
+      EXPECT_TRUE(within(first, cases.sizes[k])) << cases.sizes[k];
+      EXPECT_TRUE(!cases.either_sign || within(first, -cases.sizes[k])) << -cases.sizes[k];
+      if (k == 0 || std::isnan(first.neutral)) continue;
+      EXPECT_GT(std::abs(cases.sizes[k] - first.neutral), std::abs(cases.sizes[k - 1] - first.neutral));
+    }
+    for (std::size_t k = 0; k < cases.others.size(); ++k) {
+      const tribofit::Parameter& p = info.parameters[k + 1];
+      const ValueDraw& draw = cases.others[k];
+      for (const double value : draw.choices) EXPECT_TRUE(within(p, value)) << p.name;
+      if (draw.choices.empty()) {
+        EXPECT_TRUE(within(p, draw.lower) && within(p, draw.upper) && draw.lower < draw.upper) << p.name;
+      }
+    }
   }
 }
 
@@ -109,15 +132,20 @@ TEST(HiddenEffects, NothingIsNamedInSlidingWhereNothingIsHidden) {
   }
 }
 
-/// What the block shows by how it sticks is not hidden where it never does.
 /// 1/f noise raises whole slips, and wanders over the record: neither is an effect, nor the mark of another law.
 TEST(HiddenEffects, NothingIsNamedInFlickerNoise) {
-  const std::vector<Case> seed1 = plan_record_kinds({"stick-slip-flicker"}, 260, 0, 1);
-  const std::vector<Case> seed2 = plan_record_kinds({"stick-slip-flicker"}, 100, 0, 2);
-  const std::vector<Case> cases = {seed1[126], seed1[256], seed2[61], seed2[86], seed2[92]};
+  std::vector<Case> cases;
+  for (const auto& [seed, number] : {std::pair{1, 126}, {1, 256}, {2, 61}, {2, 86}, {2, 92}}) {
+    const std::string name = "stick-slip-flicker/nothing:" + std::to_string(number);
+    for (const Case& c : plan_record_kinds({"stick-slip-flicker"}, 260, 0, static_cast<std::uint64_t>(seed))) {
+      if (c.name == name) cases.push_back(c);
+    }
+  }
+  ASSERT_EQ(cases.size(), 5);
   EXPECT_EQ(count_right(run_cases(cases, 0)), cases.size());
 }
 
+/// What the block shows by how it sticks is not hidden where it never does.
 TEST(HiddenEffects, SlidingHidesOnlyWhatItCanShow) {
   const std::vector<std::string> sliding = {"steps", "ramps", "sines", "reversals"};
   std::set<std::string> hidden;
@@ -190,6 +218,7 @@ TEST(HiddenEffects, UpperBoundOfARateIsThatOfTheBinomial) {
   EXPECT_NEAR(upper_bound_95(0, 800), 1 - std::pow(0.05, 1.0 / 800), 1e-12);
   EXPECT_NEAR(upper_bound_95(1, 10), 0.394163, 1e-6);  // Clopper, Pearson, Biometrika 26 (1934) 404
   EXPECT_EQ(upper_bound_95(10, 10), 1);
+  EXPECT_NEAR(lower_bound(9, 10, 0.95), 1 - 0.394163, 1e-6);
 }
 
 // The force sensor of two runs is one. Where some slips show that it is a low-pass and others, for noise, do not, each

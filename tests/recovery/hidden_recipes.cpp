@@ -22,6 +22,7 @@ std::vector<Setting> settings_for(SketchView view) {
     case SketchView::ripple:
       return {Setting::slow};
     case SketchView::load:
+    case SketchView::load_channel:
       return {Setting::load_swings};
     case SketchView::temperature:
       return {Setting::temperature_swings};
@@ -34,11 +35,12 @@ std::vector<Recipe> from_catalogue() {
   std::vector<Recipe> out;
   for (const Effect& effect : effect_catalogue()) {
     const EffectInfo info = describe(effect);
-    if (info.hidden.sizes.empty()) continue;
     // Stick-slip hardly shows what comes after a reversal: its slips are few there.
     const auto programme =
         info.sketch.view == SketchView::since_reversal ? Programme::reversals : Programme::stick_slip;
-    for (const Setting setting : settings_for(info.sketch.view)) out.push_back({info, setting, programme});
+    for (const Setting setting : settings_for(info.sketch.view)) {
+      out.push_back({info, hidden_cases(info.key), setting, programme});
+    }
   }
   return out;
 }
@@ -57,9 +59,10 @@ const Recipe& recipe(std::string_view key) {
   return *at;
 }
 
-Ingredient ingredient(const EffectInfo& effect, double size, Random& random) {
-  Ingredient out{effect.key, size, {effect.hidden.either_sign ? random.sign() * size : size}, {0}};
-  for (const ValueDraw& draw : effect.hidden.others) {
+Ingredient ingredient(const Recipe& recipe, double size, Random& random) {
+  const EffectInfo& effect = recipe.effect;
+  Ingredient out{effect.key, size, {recipe.hidden.either_sign ? random.sign() * size : size}, {0}};
+  for (const ValueDraw& draw : recipe.hidden.others) {
     out.values.push_back(draw.choices.empty() ? random.uniform(draw.lower, draw.upper)
                                               : draw.choices[random.below(draw.choices.size())]);
   }
@@ -67,6 +70,17 @@ Ingredient ingredient(const EffectInfo& effect, double size, Random& random) {
     if (effect.parameters[k].decisive) out.main_parameters.push_back(k);
   }
   return out;
+}
+
+Ingredient ingredient(const Recipe& recipe, Random& random) {
+  const std::vector<double>& sizes = recipe.hidden.sizes;
+  return ingredient(recipe, sizes[random.below(sizes.size())], random);
+}
+
+std::uint64_t hash(std::string_view text, std::uint64_t seed) {
+  std::uint64_t h = 0xcbf29ce484222325u ^ (seed * 0x9e3779b97f4a7c15u);
+  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return h;
 }
 
 std::optional<Programme> sliding_programme(const EffectInfo& effect) {

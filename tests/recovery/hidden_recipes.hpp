@@ -13,7 +13,7 @@
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/oscillator/drive.hpp"
 
-/// What is hidden in the benchmark: each effect of the catalogue in the sizes that its header states, and pairs.
+/// What is hidden in the benchmark: each effect of the catalogue in the sizes of hidden_sizes.cpp, and pairs.
 namespace recovery {
 
 /// Numbers from a seed, the same with every standard library.
@@ -39,9 +39,25 @@ class Random {
   std::mt19937_64 engine_;
 };
 
+/// How a parameter is drawn, in its unit.
+struct ValueDraw {
+  std::vector<double> choices = {};  ///< one of these; empty: anything between the limits
+  double lower = 0, upper = 0;
+};
+
+/// How large an effect is where people meet it. The first parameter must come back, and those that are decisive.
+struct HiddenCases {
+  std::vector<double> sizes = {};      ///< of the first parameter, in its unit, the least effect first
+  bool either_sign = false;            ///< each size is as likely negative
+  std::vector<ValueDraw> others = {};  ///< of the other parameters, in their order
+};
+/// Throws std::invalid_argument for an effect that has no row.
+const HiddenCases& hidden_cases(std::string_view key);
+
 /// An effect and the record in which it is hidden.
 struct Recipe {
   tribofit::EffectInfo effect;
+  HiddenCases hidden;
   Setting setting;
   Programme programme = Programme::stick_slip;
 };
@@ -50,8 +66,9 @@ struct Recipe {
 const std::vector<Recipe>& recipes();
 const Recipe& recipe(std::string_view key);
 
-/// The effect in one of its sizes, its other parameters drawn as its header says.
-Ingredient ingredient(const tribofit::EffectInfo& effect, double size, Random& random);
+/// The effect in this size, or in one of its own, its other parameters drawn.
+Ingredient ingredient(const Recipe& recipe, double size, Random& random);
+Ingredient ingredient(const Recipe& recipe, Random& random);
 
 /// The speed programme of a sliding record that shows the effect; none where only break-away or stick shows it, as its
 /// header says.
@@ -74,6 +91,11 @@ std::uint64_t hash(std::string_view text, std::uint64_t seed);
 
 /// The speed of the disc about `mean` [rad/s], at t = 0 and later (and constant, or as it goes on, before).
 tribofit::SpeedProfile sliding_speed(Programme programme, double mean, Random& random);
+
+/// Steady friction of a model at 60 speeds in equal ratios from 0.5 to 200 mm/s in each direction, with noise of that
+/// deviation; p: its parameters [SI].
+tribofit::Trace steady_points(const tribofit::FrictionModel& model, const std::vector<double>& p, double noise,
+                              Random& random);
 
 /// The case as a record of sliding, what is hidden in it on the scales of that.
 void hide_in_sliding(Case& c, Programme programme);

@@ -5,10 +5,8 @@
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <set>
 
 #include "hidden_tables.hpp"
-#include "tribofit/friction/effect_pairs.hpp"
 
 namespace recovery {
 
@@ -96,42 +94,6 @@ std::string confusion_table(const Outcomes& singles) {
   return text;
 }
 
-/// Pairs that look alike: is the one taken for the other?
-std::string twins_table(const Outcomes& singles) {
-  std::string text =
-      "| hidden | looks like | n | alone | with it in a group | with it, group too large | it was named instead |\n"
-      "|---|---|--:|--:|--:|--:|--:|\n";
-  std::vector<std::string> seen;
-  for (const Outcome* first : singles) {
-    const std::string& key = first->tested.hidden[0].key;
-    if (std::find(seen.begin(), seen.end(), key) != seen.end()) continue;
-    seen.push_back(key);
-    Outcomes asked;
-    std::copy_if(singles.begin(), singles.end(), std::back_inserter(asked),
-                 [&](const Outcome* o) { return o->tested.hidden[0].key == key; });
-    for (const LookAlike& twin : look_alikes(key)) {
-      std::size_t grouped = 0, wide = 0, instead = 0;
-      for (const Outcome* o : asked) {
-        for (const Name& name : o->names) {
-          const auto in = [&](const std::string& k) {
-            return name.added == k ||
-                   std::find(name.equivalent.begin(), name.equivalent.end(), k) != name.equivalent.end();
-          };
-          if (!in(twin.key)) continue;
-          if (!in(key)) {
-            ++instead;
-          } else {
-            ++(name.equivalent.size() < 4 ? grouped : wide);
-          }
-        }
-      }
-      fmt::format_to(std::back_inserter(text), "| `{}` | `{}` | {} | {} | {} | {} | {} |\n", key, twin.key,
-                     asked.size(), count(asked, Naming::alone), grouped, wide, instead);
-    }
-  }
-  return text;
-}
-
 /// Of groups that formed, and of pairs of the catalogue that look alike.
 std::string experiments_table(const Outcomes& tried) {
   std::map<std::pair<std::string, std::string>, std::pair<std::size_t, std::size_t>> groups;
@@ -147,34 +109,6 @@ std::string experiments_table(const Outcomes& tried) {
     fmt::format_to(std::back_inserter(text), "| `{}` | {} | {} | {} |\n", group.first, group.second, counts.first,
                    counts.second);
   }
-  return text;
-}
-
-std::string nothing_table(const Outcomes& empties) {
-  std::string text =
-      "| records with nothing hidden | n | something named | rate | at most (95 %) | named |\n"
-      "|---|--:|--:|--:|--:|---|\n";
-  const auto row = [&](const std::string& name, auto&& belongs) {
-    Outcomes g;
-    std::copy_if(empties.begin(), empties.end(), std::back_inserter(g), belongs);
-    if (g.empty()) return;
-    const std::size_t alarms = g.size() - count(g, is_right);
-    fmt::format_to(std::back_inserter(text), "| {} | {} | {} | {} | {:.1f} % | {} |\n", name, g.size(), alarms,
-                   percent(alarms, g.size()), 100 * upper_bound_95(alarms, g.size()), list(alarms_of(g)));
-  };
-  for (const double colour : {0.0, 0.9}) {
-    for (const double wander : {0.0, 0.7}) {
-      row(fmt::format("{} noise, {} scatter", colour > 0 ? "AR(1) 0.9" : "white",
-                      wander > 0 ? "wandering" : "independent"),
-          [&](const Outcome* o) { return o->tested.colour == colour && o->tested.wander == wander; });
-    }
-  }
-  std::set<Setting> settings;
-  for (const Outcome* o : empties) settings.insert(o->tested.setting);
-  for (const Setting setting : settings) {
-    row(std::string(to_string(setting)), [&](const Outcome* o) { return o->tested.setting == setting; });
-  }
-  row("all", [](const Outcome*) { return true; });
   return text;
 }
 
@@ -197,13 +131,12 @@ std::string others_table(const Outcomes& outcomes) {
 
 /// By what is not the effect: is one radius, law or noise worse than the others?
 std::string conditions_table(const Outcomes& outcomes) {
-  std::string text = "| condition | n | named |\n|---|--:|--:|\n";
+  std::string text = "| condition | n | named (95 % interval) |\n|---|--:|--:|\n";
   const auto row = [&](const std::string& name, auto&& belongs) {
     Outcomes g;
     std::copy_if(outcomes.begin(), outcomes.end(), std::back_inserter(g), belongs);
     if (g.empty()) return;
-    fmt::format_to(std::back_inserter(text), "| {} | {} | {} |\n", name, g.size(),
-                   percent(count(g, is_right), g.size()));
+    fmt::format_to(std::back_inserter(text), "| {} | {} | {} |\n", name, g.size(), share(count(g, is_right), g.size()));
   };
   for (const Law& law : {Law(ExponentialLaw{}), Law(FractionalLaw{})}) {
     row(std::string(to_string(law)), [&](const Outcome* o) { return o->tested.law == law; });
@@ -224,20 +157,20 @@ std::string summary(const std::vector<Outcome>& all) {
   const Outcomes singles = of_kind(all, Kind::single), pairs = of_kind(all, Kind::pair),
                  empties = of_kind(all, Kind::nothing), aliens = of_kind(all, Kind::alien),
                  unknowable = of_kind(all, Kind::unknowable);
-  std::string text = "| what is asked | of | figure |\n|---|--:|--:|\n";
+  std::string text = "| what is asked | of | figure (95 % interval) |\n|---|--:|--:|\n";
   const auto row = [&](const char* name, std::size_t n, const std::string& figure) {
     if (n > 0) fmt::format_to(std::back_inserter(text), "| {} | {} | {} |\n", name, n, figure);
   };
   const auto share = [&](const char* name, const Outcomes& asked, const auto& what) {
-    row(name, asked.size(), percent(count(asked, what), asked.size()));
+    row(name, asked.size(), recovery::share(count(asked, what), asked.size()));
   };
   share("single effects named, alone or in a group of at most 4", singles, is_right);
   share("single effects named alone", singles, [](const Outcome* o) { return o->naming == Naming::alone; });
   share("pairs of which both are named", pairs, is_right);
   share("threes of which all are named", of_kind(all, Kind::triple), is_right);
   const std::size_t alarms = empties.size() - count(empties, is_right);
-  row("something named where nothing is hidden (at most, 95 %)", empties.size(),
-      fmt::format("{} ({:.1f} %)", percent(alarms, empties.size()), 100 * upper_bound_95(alarms, empties.size())));
+  row("something named, or left unexplained, where nothing is hidden", empties.size(),
+      recovery::share(alarms, empties.size()));
   share("effects of no catalogue called unexplained over the right variable", aliens, is_right);
   share("ageing at one constant speed called untestable", unknowable, is_right);
   Outcomes named;
@@ -245,8 +178,8 @@ std::string summary(const std::vector<Outcome>& all) {
     std::copy_if(asked.begin(), asked.end(), std::back_inserter(named), is_right);
   share("held-out error within 1.15 times what the true law leaves, where named", named, is_low);
   const Parameters p = parameters(named);
-  row("main parameters within 10 %", p.n, percent(p.close, p.n));
-  row("main parameters inside their 95 % interval", p.n, percent(p.covered, p.n));
+  row("main parameters within 10 %", p.n, recovery::share(p.close, p.n));
+  row("main parameters inside their 95 % interval", p.n, recovery::share(p.covered, p.n));
   row("mean size of the group that holds the hidden effect", singles.size(), mean_group(singles));
   Outcomes tried;
   std::copy_if(singles.begin(), singles.end(), std::back_inserter(tried), was_tried);
@@ -277,13 +210,12 @@ std::string tables(const std::vector<Outcome>& all) {
   section("One effect hidden", singles, singles_table);
   section("Two effects hidden", of_kind(all, Kind::pair), pairs_table);
   section("Three effects hidden", of_kind(all, Kind::triple), pairs_table);
-  section("Nothing hidden", of_kind(all, Kind::nothing), nothing_table);
+  section("Nothing hidden", of_kind(all, Kind::nothing), empties_table);
   Outcomes others = of_kind(all, Kind::alien);
   const Outcomes unknowable = of_kind(all, Kind::unknowable);
   others.insert(others.end(), unknowable.begin(), unknowable.end());
   section("In no catalogue, or not to be seen in these data", others, others_table);
   section("What was named for what was hidden", singles, confusion_table);
-  section("Effects that look alike", singles, twins_table);
   Outcomes tried;
   std::copy_if(singles.begin(), singles.end(), std::back_inserter(tried), was_tried);
   section("The next experiment, simulated", tried, experiments_table);

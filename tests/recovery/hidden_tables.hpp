@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "hidden_effects.hpp"
+#include "rates.hpp"
 
 namespace recovery {
 
@@ -47,10 +48,6 @@ inline std::size_t count(const Outcomes& outcomes, Naming naming) {
   return count(outcomes, [&](const Outcome* o) { return o->failure.empty() && o->naming == naming; });
 }
 
-inline std::string percent(std::size_t hits, std::size_t n) {
-  return n == 0 ? "" : fmt::format("{:.1f} %", 100 * static_cast<double>(hits) / static_cast<double>(n));
-}
-
 inline bool is_right(const Outcome* o) {
   return o->right;
 }
@@ -83,14 +80,10 @@ inline std::string list(const std::map<std::string, std::size_t>& counts) {
   return text;
 }
 
-/// What was said of records with nothing hidden.
-inline std::map<std::string, std::size_t> alarms_of(const Outcomes& empties) {
-  std::map<std::string, std::size_t> said;
-  for (const Outcome* o : empties) {
-    for (const Name& n : o->names) ++said[n.added];
-    if (o->names.empty() && !o->right) ++said[std::string("verdict ") + std::string(to_string(o->verdict))];
-  }
-  return said;
-}
+/// What was named, and what else was said, where nothing is hidden, as Markdown.
+std::string empties_table(const Outcomes& empties);
+
+/// How often each group of cases was named, as Markdown.
+std::string groups_table(const Outcomes& all);
 
 }  // namespace recovery

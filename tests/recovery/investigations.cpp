@@ -248,7 +248,7 @@ std::vector<Case> investigated_cases(std::size_t count, std::uint64_t seed) {
     Random random(own);
     Case c = draw_case(name, i, Kind::look_alike, r.setting == Setting::four_speeds ? Setting::fast : r.setting, own,
                        random);
-    c.hidden = {ingredient(r.effect, r.effect.hidden.sizes[random.below(r.effect.hidden.sizes.size())], random)};
+    c.hidden = {ingredient(r, random)};
     c.partner = partner;
     c.length = kLength * random.uniform(0.4, 1);
     c.noise = kNoise * random.uniform(0.5, 2);

@@ -56,6 +56,7 @@ Trace slowed(Trace trace, double s) {
 struct Off {
   std::string text;
   bool far = false;
+  int inside = 0;  ///< of the 95 % intervals
 };
 
 Off off(const Fit& fit, const AlteredCase& what) {
@@ -64,6 +65,7 @@ Off off(const Fit& fit, const AlteredCase& what) {
   for (std::size_t k = 0; k < 3; ++k) {
     const FitParameter& p = fit.parameters[k];
     const double error = p.value - truth[k];
+    out.inside += p.lower95 <= truth[k] && truth[k] <= p.upper95 ? 1 : 0;
     if (std::abs(error) < 3 * p.std_error) continue;
     out.far = out.far || std::abs(error) > 0.02 * truth[k];
     out.text += fmt::format(" {} {:+.2f} % ({:.1f} se);", p.parameter.name, 100 * error / truth[k],
@@ -132,12 +134,15 @@ Judged judge(const AlteredCase& what) {
     const bool by_exponential = found.diagnosis.law == Law(ExponentialLaw{}) && !found.rungs.empty();
     const Off parameters = off(by_exponential ? found.rungs.back() : found.fits[0], what);
     judged.strict = parameters.text.empty();
+    judged.inside = parameters.inside;
     const std::string problem = problems(one, HealthItem::Status::problem);
     bool is_named = !problem.empty() || says_unreliable(one);
     for (const EffectFinding& effect : found.diagnosis.effects) {
       const bool is_fault = std::find(what.may_name.begin(), what.may_name.end(), effect.key) != what.may_name.end();
       is_named = is_named || (is_fault && effect.status <= EffectStatus::possible);
-      if (effect.status == EffectStatus::possible) judged.text += " (possible " + effect.key + ")";
+      if (effect.status != EffectStatus::possible) continue;
+      judged.possible.push_back(effect.key);
+      judged.text += " (possible " + effect.key + ")";
     }
     judged.outcome = !wrong.empty()    ? Outcome::wrong
                      : !parameters.far ? Outcome::right

@@ -10,6 +10,7 @@
 
 #include "hidden_effects.hpp"
 #include "hidden_recipes.hpp"
+#include "tribofit/friction/evaluate.hpp"
 
 namespace recovery {
 
@@ -28,6 +29,7 @@ struct RecordKind {
   Programme programme = Programme::stick_slip;
   double slowness = 1;
   Noise noise = Noise::any;
+  bool level_scatters = false;
 };
 
 constexpr RecordKind kRecordKinds[] = {
@@ -42,6 +44,10 @@ constexpr RecordKind kRecordKinds[] = {
     {.name = "slow-30", .slowness = 30},
     {.name = "fast-0.05", .slowness = 0.05},
     {.name = "fast-0.01", .slowness = 0.01},
+    {.name = "stick-slip-level", .level_scatters = true},
+    {.name = "strokes", .programme = Programme::strokes},
+    {.name = "constant-speed", .programme = Programme::constant},
+    {.name = "points", .programme = Programme::points},
 };
 
 /// An eighth of a period is to sliding what a slip is to stick-slip.
@@ -93,9 +99,15 @@ Case make_case(const RecordKind& kind, const Recipe* recipe, std::size_t size, s
   c.programme = kind.programme;
   set_noise(c, kind.noise, number);
   if (slides) let_slide(c);
+  if (kind.level_scatters) {
+    constexpr double kWander[] = {0, 0.7, 0.95};
+    c.setting = Setting::fast;
+    c.level_scatter = random.uniform(0, 0.03);
+    c.wander = kWander[number / 3 % 3];
+  }
   if (recipe != nullptr) {
-    const std::vector<double>& sizes = recipe->effect.hidden.sizes;
-    c.hidden = {ingredient(recipe->effect, sizes[size % sizes.size()], random)};
+    const std::vector<double>& sizes = recipe->hidden.sizes;
+    c.hidden = {ingredient(*recipe, sizes[size % sizes.size()], random)};
     if (slides) scale(c.hidden[0], sliding_scales());
   }
   return slowed(std::move(c), kind.slowness);
@@ -133,8 +145,7 @@ Case make_asked(const RecordKind& kind, const Asked& asked, std::size_t number, 
     c.friction = {random.uniform(0.35, 0.45), random.sign() * random.uniform(0.01, 0.02)};
   }
   if (asked.effect) {
-    const EffectInfo& effect = recipe(*asked.effect).effect;
-    c.hidden = {ingredient(effect, effect.hidden.sizes[random.below(effect.hidden.sizes.size())], random)};
+    c.hidden = {ingredient(recipe(*asked.effect), random)};
     scale(c.hidden[0], sliding_scales());
   }
   return c;
@@ -151,6 +162,7 @@ const RecordKind& kind_called(const std::string& name) {
 
 SpeedProfile sliding_speed(Programme programme, double mean, Random& random) {
   const double period = kPeriod * random.uniform(0.8, 1.2);
+  if (programme == Programme::constant) return constant_speed(mean * 2 * std::pow(10, -random.uniform(0, 1)));
   if (programme == Programme::reversals) return reversing_speed(2 * mean, 1 / period);
   if (programme == Programme::sines) {
     const double w = 2 * std::numbers::pi / period;
@@ -161,6 +173,15 @@ SpeedProfile sliding_speed(Programme programme, double mean, Random& random) {
     return out;
   }
   std::vector<double> times, speeds;
+  if (programme == Programme::strokes) {
+    std::vector<Pause> dwells;
+    for (double t = 0; t < 65; t += period) {
+      times.push_back(t);
+      speeds.push_back((times.size() % 2 == 0 ? -2 : 2) * mean * std::pow(9, -random.uniform(0, 1)));
+      dwells.push_back({t + (0.6 + 0.2 * random.uniform(0, 1)) * period, 0.15 * period});
+    }
+    return stepped_speed(std::move(times), std::move(speeds), dwells);
+  }
   if (programme == Programme::ramps) {
     for (double t = 0; t < 65; t += period / 2) {
       times.push_back(t);
@@ -198,6 +219,31 @@ Case slowed(Case c, double slowness) {
   return c;
 }
 
+Trace steady_points(const FrictionModel& model, const std::vector<double>& p, double noise, Random& random) {
+  constexpr std::size_t kSpeeds = 60;
+  constexpr double kSlowest = 0.5e-3, kFastest = 0.2;
+  Trace trace;
+  trace.kind = tribofit::RecordKind::points;
+  trace.velocity_kind = VelocityKind::relative;
+  for (const double sign : {1.0, -1.0}) {
+    for (std::size_t k = 0; k < kSpeeds; ++k) {
+      const double v = sign * kSlowest * std::pow(kFastest / kSlowest, static_cast<double>(k) / (kSpeeds - 1.0));
+      const double time[] = {-1, 0}, speed[] = {v, v};
+      double mu[2];
+      Slip slip;
+      slip.time = time;
+      slip.velocity = speed;
+      slip.direction = sign;
+      evaluate<double>(model, p.data(), slip, slip.velocity, mu);
+      trace.time.push_back(static_cast<double>(trace.time.size()));
+      trace.velocity.push_back(v);
+      trace.friction.push_back(mu[1] + noise * random.normal());
+    }
+  }
+  trace.steps = {{0, trace.size(), "", {}}};
+  return trace;
+}
+
 /// Sum of first-order processes of equal deviation whose times double from one to the next.
 std::vector<double> flicker_noise(std::size_t size, Random& random) {
   std::vector<double> out(size, 0.0);
@@ -233,7 +279,7 @@ std::vector<Case> plan_record_kinds(const std::vector<std::string>& kinds, std::
       const auto programme = sliding_programme(r.effect);
       if (kind.programme == Programme::stick_slip || programme == kind.programme) shown.push_back(&r);
     }
-    for (std::size_t i = 0; i < loaded; ++i) {
+    for (std::size_t i = 0; i < loaded && !shown.empty() && !kind.level_scatters; ++i) {
       cases.push_back(make_case(kind, shown[i % shown.size()], i + i / shown.size(), i, seed));
     }
   }

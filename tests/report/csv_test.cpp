@@ -5,7 +5,7 @@
 
 #include <sstream>
 
-#include "folder.hpp"
+#include "../folder.hpp"
 #include "made_up.hpp"
 #include "tribofit/output/whole_file.hpp"
 

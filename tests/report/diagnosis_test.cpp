@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "folder.hpp"
+#include "../folder.hpp"
 #include "made_up.hpp"
 #include "report/terminal_text.hpp"
 #include "tribofit/report/csv.hpp"

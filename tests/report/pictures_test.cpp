@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "drawn_svg.hpp"
-#include "folder.hpp"
+#include "../folder.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "../real_data.hpp"
 #include "tribofit/segmentation/cycles.hpp"
 #include "tribofit/statistics/spectrum.hpp"
 
@@ -19,11 +20,6 @@ namespace {
 
 using Table = std::map<std::string, std::vector<double>>;
 constexpr double rpm = 2 * std::numbers::pi / 60;
-
-std::filesystem::path shared_dir() {
-  if (const char* given = std::getenv("TRIBOFIT_SHARED_DIR")) return given;
-  return std::filesystem::path(TRIBOFIT_SOURCE_DIR) / ".." / "shared";
-}
 
 // Plain comma-separated numbers under one header line; the ingest module has its own tests.
 Table read_plain(const std::filesystem::path& path) {
@@ -46,7 +42,7 @@ Table read_plain(const std::filesystem::path& path) {
 }
 
 TEST(Measured, DrillString) {
-  const auto path = shared_dir() / "measured/drill-string/drillstring_175.csv";
+  const auto path = real_data("measured/drill-string/drillstring_175.csv");
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent";
   Table table = read_plain(path);
   Trace trace;
@@ -71,7 +67,7 @@ TEST(Measured, DrillString) {
 }
 
 TEST(Measured, PositioningSystemReversesAndNeverDrifts) {
-  const auto path = shared_dir() / "measured/emps/emps_training_measured.csv";
+  const auto path = real_data("measured/emps/emps_training_measured.csv");
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent";
   Table table = read_plain(path);
   Trace trace;
@@ -95,7 +91,7 @@ TEST(Measured, PositioningSystemReversesAndNeverDrifts) {
 }
 
 TEST(Measured, HiddenEffectsOfAnIndependentSimulator) {
-  const auto folder = shared_dir() / "hidden-effects/dev";
+  const auto folder = real_data("hidden-effects/dev");
   if (!std::filesystem::exists(folder / "truth.jsonl")) GTEST_SKIP() << folder << " is absent";
   std::ifstream truth(folder / "truth.jsonl");
   std::string line;

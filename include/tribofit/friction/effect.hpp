@@ -21,9 +21,9 @@ struct Motion;
 /// 3. One test in tests/friction/.
 /// The place in the list is the order in which effects act. viscous.hpp is a short example; a point of it stands in
 /// tests/friction/effects_test.cpp (SayWhatTheirEquationSaysAtAPoint).
-/// The command line, the help, the JSON, the bounds, the contract tests, the simulation, the diagnosis and the
-/// benchmark of hidden effects find it through the list. All that they must know of it stands in its EffectInfo, its
-/// HiddenCases among them: no other file names it.
+/// The command line, the help, the JSON, the bounds, the contract tests, the simulation and the diagnosis find it
+/// through the list. All that they must know of it stands in its EffectInfo: no other file names it. The benchmark of
+/// hidden effects asks for a row of sizes in tests/recovery/hidden_sizes.cpp.
 ///
 /// An effect is one physical statement. It changes friction at one or more of these places, in this order; every
 /// hook is a const member template over the number type T (double, or a dual number for derivatives), takes its own
@@ -155,22 +155,6 @@ struct Sketch {
   std::vector<double> values = {};  ///< of its parameters, in their units; empty: 0.3 of the way between their bounds
 };
 
-/// How a parameter is drawn where its effect is hidden in a simulated record, in the unit of the parameter.
-struct ValueDraw {
-  std::vector<double> choices = {};  ///< one of these; empty: anything between the limits
-  double lower = 0, upper = 0;
-};
-inline const ValueDraw kAnyPhase = {.lower = -3.14, .upper = 3.14};
-
-/// How large an effect is where people meet it: the benchmark (tests/recovery) hides it in these sizes and asks the
-/// diagnosis for its name. The variable of the sketch is what varies in the records. The first parameter must come
-/// back, and those that are decisive.
-struct HiddenCases {
-  std::vector<double> sizes = {};      ///< of the first parameter, in its unit, the least effect first
-  bool either_sign = false;            ///< each size is as likely negative
-  std::vector<ValueDraw> others = {};  ///< of the other parameters, in their order
-};
-
 /// An effect that looks the same in most records, and the experiment that distinguishes the two, as one imperative
 /// sentence without a full stop.
 struct LookAlike {
@@ -207,7 +191,6 @@ struct EffectInfo {
   bool creeps_like_sag = false;  ///< its creep in stick, in proportion to its parameter, is like a plateau that sags
   bool needs_full_resolution = false;  ///< a spectral line, which means of a few samples do not show
   Sketch sketch = {};
-  HiddenCases hidden = {};
   /// Stated here for one of each two; describe() completes them for both.
   std::vector<LookAlike> pairs = {};
   bool kinematic_effect = false;  ///< see is_kinematic(); filled in by describe()

@@ -35,7 +35,6 @@ struct Ageing {
                         .within_record = true}},
         .needs = {.stick_time = true},
         .sketch = {.view = SketchView::stick_time, .values = {0.02, 0.1}},
-        .hidden = {.sizes = {0.01, 0.015, 0.02}, .others = {{.lower = 0.05, .upper = 0.2}}},
         .pairs = {looks_like<RateState>("slide, hold, slide with a dozen holds from 0.3 to 6 s, or of 1, 10, 100 and "
                                         "1000 s: only ageing raises break-away with the logarithm of the hold")}};
   }

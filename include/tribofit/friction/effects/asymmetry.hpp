@@ -20,7 +20,6 @@ struct Asymmetry {
                             .start = 1}},
             .excitation = {.both_directions = true},
             .sketch = {.view = SketchView::directions, .values = {0.85}},
-            .hidden = {.sizes = {0.93, 1.07, 1.15}},
             .pairs = {
                 looks_like<SensorOffset>("lift the block off the disc and read the force sensor: what it shows without "
                                          "contact is its zero, for force_sensor.zero of the instruments file")}};

@@ -37,7 +37,6 @@ struct Backlash {
             .excitation = {.both_directions = true},
             .group = EffectGroup::rig,
             .sketch = {.view = SketchView::since_reversal, .values = {0.3, 20}},
-            .hidden = {.sizes = {0.05, 0.1, 0.2}, .others = {{.lower = 3, .upper = 30}}},
             .pairs = {looks_like<Hysteresis>("plot friction over the distance since a reversal at one speed: a play "
                                              "ends at one distance, a hysteresis fades from the first millimetre on"),
                       looks_like<Asymmetry>("make the strokes ten times as long: friction by direction stays to their "

@@ -47,7 +47,6 @@ struct Bristle {
         .needs = {.lead = true},
         .excitation = {.changing_speed = true},
         .sketch = {.view = SketchView::creep, .values = {40, 0}},
-        .hidden = {.sizes = {100, 60, 30}, .others = {{.choices = {0.001}}}},
         .pairs = {looks_like<VelocityHighPass>(VelocityHighPass::stop_the_disc),
                   looks_like<RadiusOffset>(VelocityHighPass::stop_the_disc),
                   looks_like<ContactSpin>(

@@ -39,7 +39,6 @@ struct ChannelDelay {
             .group = EffectGroup::measurement,
             .declared_by = InstrumentValue::vibrometer_delay,
             .sketch = {.view = SketchView::loop, .values = {2}},
-            .hidden = {.sizes = {0.5, 1, 2}, .either_sign = true},
             .pairs = {looks_like<ForceBandwidth>(
                           "tap the block: an edge that is shifted is a delay, for vibrometer.delay of the instruments "
                           "file (negative where friction comes late), one that is slower is a filter"),

@@ -42,8 +42,7 @@ struct ContactSpin {
             .needs = {.lead = true, .plateau = true},
             .excitation = {.break_away = "before which the block could creep"},
             .creeps_like_sag = true,
-            .sketch = {.view = SketchView::creep, .values = {4}},
-            .hidden = {.sizes = {0.5, 1, 2}}};
+            .sketch = {.view = SketchView::creep, .values = {4}}};
   }
 
   template <class T>

@@ -20,8 +20,7 @@ struct Crosstalk {
             .needs = {.load = true},
             .group = EffectGroup::measurement,
             .declared_by = InstrumentValue::force_crosstalk,
-            .sketch = {.view = SketchView::load, .values = {0.03}},
-            .hidden = {.sizes = {0.01, 0.02}, .either_sign = true}};
+            .sketch = {.view = SketchView::load, .values = {0.03}}};
   }
 
   template <class T>

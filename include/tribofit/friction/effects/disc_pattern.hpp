@@ -49,8 +49,7 @@ struct DiscPattern {
         .needs = {.angle = true},
         .excitation = {.revolutions = 2},
         .group = EffectGroup::rig,
-        .sketch = {.view = SketchView::angle, .values = {0.06, 0, 0.02, 0}},
-        .hidden = {.sizes = {0.02, 0.04}, .others = {kAnyPhase, {.choices = {0, 0.02}}, kAnyPhase}}};
+        .sketch = {.view = SketchView::angle, .values = {0.06, 0, 0.02, 0}}};
   }
 
   template <class T>

@@ -26,8 +26,7 @@ struct Drift {
                             .lower = -0.02,
                             .upper = 0.05,
                             .bound_scaling = BoundScaling::against_duration}},
-            .sketch = {.view = SketchView::time, .values = {0.003}},
-            .hidden = {.sizes = {0.0006, 0.0009, 0.0012}, .either_sign = true}};
+            .sketch = {.view = SketchView::time, .values = {0.003}}};
   }
 
   template <class T>

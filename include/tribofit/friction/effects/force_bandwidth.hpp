@@ -37,7 +37,6 @@ struct ForceBandwidth {
         .group = EffectGroup::measurement,
         .declared_by = InstrumentValue::force_bandwidth,
         .sketch = {.view = SketchView::loop, .values = {80, 0.7}},
-        .hidden = {.sizes = {300, 200, 100}, .others = {{.lower = 0.5, .upper = 0.9}}},
         .pairs = {looks_like<SensorInertia>(SensorInertia::compare_jumps)},
         .forms = {{"first-order",
                    "one time constant, as an amplifier has; seen at re-stick, where the reading of "

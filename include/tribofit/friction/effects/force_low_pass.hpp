@@ -24,7 +24,6 @@ struct ForceLowPass {
     info.source = "first-order low-pass, textbook";
     info.parameters.pop_back();  // the damping ratio
     info.sketch.values.pop_back();
-    info.hidden.others.clear();
     return info;
   }
 

@@ -32,7 +32,6 @@ struct FrictionalLag {
                             .start_grid_points = 3}},
             .excitation = {.changing_speed = true},
             .sketch = {.view = SketchView::loop, .values = {2}},
-            .hidden = {.sizes = {0.5, 1, 2}},
             .pairs = {looks_like<ChannelDelay>(ChannelDelay::tap_the_block),
                       looks_like<ForceBandwidth>(ForceBandwidth::tap_the_block),
                       looks_like<SensorInertia>(SensorInertia::compare_jumps),

@@ -30,7 +30,6 @@ struct Heating {
                         .within_record = true,
                         .decisive = true}},
         .sketch = {.view = SketchView::time, .values = {0.1, 8}},
-        .hidden = {.sizes = {0.05, 0.1}, .either_sign = true, .others = {{.lower = 8, .upper = 15}}},
         .pairs = {looks_like<RunIn>(
                       "also record 30 s at four times the disc speed on fresh, cool surfaces: heating keeps its time, "
                       "run-in its distance; or pause ten minutes and restart: heating comes back, run-in does not"),

@@ -50,7 +50,6 @@ struct Hysteresis {
         .needs = {.reversal_distance = true},
         .excitation = {.both_directions = true},
         .sketch = {.view = SketchView::since_reversal, .values = {0.1, 15}},
-        .hidden = {.sizes = {0.02, 0.04, 0.08}, .others = {{.lower = 3, .upper = 20}}},
         .pairs = {looks_like<FrictionalLag>(
                       "run the same stroke at two speeds: a hysteresis stays constant in mm, a lag in ms"),
                   looks_like<RateState>("step the speed without a reversal: contacts that are renewed answer to it, a "

@@ -43,8 +43,7 @@ struct Interference {
                             .periodic = true}},
             .group = EffectGroup::measurement,
             .needs_full_resolution = true,
-            .sketch = {.view = SketchView::line, .values = {0.01, 50, 0}},
-            .hidden = {.sizes = {0.005, 0.012}, .others = {{.choices = {50, 60, 133}}, kAnyPhase}}};
+            .sketch = {.view = SketchView::line, .values = {0.01, 50, 0}}};
   }
 
   template <class T>

@@ -19,8 +19,7 @@ struct LoadCoupling {
                             .upper = 0.9}},
             .needs = {.load = true},
             .group = EffectGroup::rig,
-            .sketch = {.view = SketchView::load_channel, .values = {0.15}},
-            .hidden = {.sizes = {0.1, 0.2}, .either_sign = true}};
+            .sketch = {.view = SketchView::load_channel, .values = {0.15}}};
   }
 
   /// What the load channel shows within the cycles.

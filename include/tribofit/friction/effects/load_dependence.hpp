@@ -23,7 +23,6 @@ struct LoadDependence {
                         .upper = 0.9}},
         .needs = {.load = true},
         .sketch = {.view = SketchView::load, .values = {0.2}},
-        .hidden = {.sizes = {0.1, 0.2, 0.3}},
         .pairs = {looks_like<Crosstalk>(
             "load from 10 to 90 N and slide in both directions: crosstalk keeps its sign when the direction turns")}};
   }

@@ -48,7 +48,6 @@ struct SpeedRipple {
         .excitation = {.revolutions = 2, .stated_disc_speed = true},
         .group = EffectGroup::rig,
         .sketch = {.view = SketchView::ripple, .values = {0.08, 2, 0}},
-        .hidden = {.sizes = {0.03, 0.07}, .others = {{.choices = {1, 2, 3}}, kAnyPhase}},
         .pairs = {looks_like<Runout>("record four revolutions: a ripple moves the plateau of v_b, a runout friction; "
                                      "or point the laser at the unloaded disc: a ripple of the speed shows there")}};
   }
@@ -85,8 +84,7 @@ struct VelocityGain {
             .excitation = {.stated_plateau = true},
             .group = EffectGroup::measurement,
             .plateau_correction = PlateauCorrection::gain,
-            .sketch = {.view = SketchView::plateau, .values = {0.92}},
-            .hidden = {.sizes = {0.93, 1.08}}};
+            .sketch = {.view = SketchView::plateau, .values = {0.92}}};
   }
 
   static FoundBeforeFit found_before_fit(const Motion& motion, const FoundValue& /*load_coupling*/) {
@@ -117,7 +115,6 @@ struct RadiusOffset {
             .group = EffectGroup::measurement,
             .plateau_correction = PlateauCorrection::radius,
             .sketch = {.view = SketchView::plateau, .values = {1.05}},
-            .hidden = {.sizes = {0.94, 1.05}},
             .pairs = {looks_like<VelocityGain>(
                 "point the laser at what moves at a known speed (the rim of the disc, with an encoder on it): reading "
                 "over speed is the gain, for vibrometer.gain of the instruments file; what is left is the radius")}};
@@ -158,7 +155,6 @@ struct VelocityHighPass {
             .needs = {.plateau = true},
             .group = EffectGroup::measurement,
             .sketch = {.view = SketchView::plateau, .values = {0.3}},
-            .hidden = {.sizes = {0.1, 0.3}},
             .pairs = {looks_like<RadiusOffset>(stop_the_disc)}};
   }
 

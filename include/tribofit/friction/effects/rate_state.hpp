@@ -41,7 +41,6 @@ struct RateState {
                             .scales_with_friction = true}},
             .excitation = {.changing_speed = true},
             .sketch = {.view = SketchView::loop, .values = {100, 0}},
-            .hidden = {.sizes = {20, 50, 90}, .others = {{.choices = {0}}}},
             .pairs = {looks_like<SensorInertia>(SensorInertia::compare_jumps),
                       looks_like<ChannelDelay>(ChannelDelay::tap_the_block),
                       looks_like<ForceBandwidth>(ForceBandwidth::tap_the_block),

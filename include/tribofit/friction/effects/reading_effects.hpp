@@ -32,8 +32,7 @@ struct VelocityOffset {
             .needs = {.plateau = true},
             .excitation = {.stated_plateau = true},
             .group = EffectGroup::measurement,
-            .sketch = {.view = SketchView::plateau, .values = {0.5}},
-            .hidden = {.sizes = {0.3, 1}, .either_sign = true}};
+            .sketch = {.view = SketchView::plateau, .values = {0.5}}};
   }
 
   static FoundBeforeFit found_before_fit(const Motion& motion, const FoundValue& /*load_coupling*/) {
@@ -67,8 +66,7 @@ struct VelocityBandwidth {
                             .neutral = 5000,
                             .bound_scaling = BoundScaling::against_slip_time}},
             .group = EffectGroup::measurement,
-            .sketch = {.view = SketchView::loop, .values = {200}},
-            .hidden = {.sizes = {800, 400, 200}}};
+            .sketch = {.view = SketchView::loop, .values = {200}}};
   }
 
   static FoundBeforeFit found_before_fit(const Motion& motion, const FoundValue& /*load_coupling*/) {
@@ -101,8 +99,7 @@ struct VelocityCompression {
             .needs = {.plateau = true},
             .excitation = {.stated_plateau = true},
             .group = EffectGroup::measurement,
-            .sketch = {.view = SketchView::curve, .values = {0.2}},
-            .hidden = {.sizes = {0.05, 0.1}, .either_sign = true}};
+            .sketch = {.view = SketchView::curve, .values = {0.2}}};
   }
 
   static FoundBeforeFit found_before_fit(const Motion& motion, const FoundValue& /*load_coupling*/) {
@@ -133,8 +130,7 @@ struct ClockDrift {
                             .upper = 0.01,
                             .neutral = 0}},
             .group = EffectGroup::measurement,
-            .sketch = {.view = SketchView::time, .values = {2e-4}},
-            .hidden = {.sizes = {1e-4, 2e-4}, .either_sign = true}};
+            .sketch = {.view = SketchView::time, .values = {2e-4}}};
   }
 
   static FoundBeforeFit found_before_fit(const Motion& motion, const FoundValue& /*load_coupling*/) {

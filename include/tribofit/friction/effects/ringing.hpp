@@ -49,9 +49,7 @@ struct Ringing {
             .excitation = {.break_away = "to strike it"},
             .group = EffectGroup::rig,
             .needs_full_resolution = true,
-            .sketch = {.view = SketchView::since_break_away, .values = {0.02, 200, 0.05, 0}},
-            .hidden = {.sizes = {0.008, 0.014},
-                       .others = {{.lower = 150, .upper = 400}, {.lower = 0.02, .upper = 0.06}, kAnyPhase}}};
+            .sketch = {.view = SketchView::since_break_away, .values = {0.02, 200, 0.05, 0}}};
   }
 
   template <class T>

@@ -29,7 +29,6 @@ struct RunIn {
                             .decisive = true}},
             .needs = {.distance = true},
             .sketch = {.view = SketchView::distance, .values = {0.15, 60}},
-            .hidden = {.sizes = {0.05, 0.08}, .either_sign = true, .others = {{.lower = 30, .upper = 80}}},
             .pairs = {looks_like<Drift>(Drift::record_longer)}};
   }
 

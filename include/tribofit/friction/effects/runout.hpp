@@ -34,7 +34,6 @@ struct Runout {
         .excitation = {.revolutions = 2},
         .group = EffectGroup::rig,
         .sketch = {.view = SketchView::angle, .values = {0.08, 0}},
-        .hidden = {.sizes = {0.02, 0.04, 0.06}, .others = {kAnyPhase}},
         .pairs = {looks_like<Drift>("record four revolutions (60 s at 4 rpm): a runout comes back, a drift goes on")}};
   }
 

@@ -31,8 +31,7 @@ struct SensorInertia {
         .needs = {.acceleration = true, .force = true},
         .group = EffectGroup::measurement,
         .declared_by = InstrumentValue::force_mass_below,
-        .sketch = {.view = SketchView::acceleration, .values = {0.1}},
-        .hidden = {.sizes = {0.1, 0.2}}};
+        .sketch = {.view = SketchView::acceleration, .values = {0.1}}};
   }
 
   static double mass_below_sensor(const double* p) { return p[0]; }

@@ -22,8 +22,7 @@ struct SensorOffset {
             .excitation = {.both_directions = true},
             .group = EffectGroup::measurement,
             .declared_by = InstrumentValue::force_zero,
-            .sketch = {.view = SketchView::directions, .values = {0.03}},
-            .hidden = {.sizes = {0.01, 0.02}, .either_sign = true}};
+            .sketch = {.view = SketchView::directions, .values = {0.03}}};
   }
 
   template <class T>

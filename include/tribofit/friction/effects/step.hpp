@@ -32,8 +32,7 @@ struct StepChange {
                             .scope = ParameterScope::record,
                             .search = ParameterSearch::moment_of_change,
                             .decisive = true}},
-            .sketch = {.view = SketchView::time, .values = {0.03, 20}},
-            .hidden = {.sizes = {0.015, 0.03}, .either_sign = true, .others = {{.lower = 8, .upper = 32}}}};
+            .sketch = {.view = SketchView::time, .values = {0.03, 20}}};
   }
 
   /// The change takes a thousandth of the time before it, shorter than a cycle, so that its time has a derivative. Far

@@ -25,8 +25,7 @@ struct StribeckExponent {
                         .lower = 0.5,
                         .upper = 2,
                         .start = 1}},
-        .sketch = {.view = SketchView::curve, .values = {1.8}},
-        .hidden = {.sizes = {0.6, 1.4, 1.8}}};
+        .sketch = {.view = SketchView::curve, .values = {1.8}}};
   }
 
   template <class T>

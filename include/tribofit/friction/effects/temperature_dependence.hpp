@@ -21,8 +21,7 @@ struct TemperatureDependence {
                         .lower = -0.05,
                         .upper = 0.05}},
         .needs = {.temperature = true},
-        .sketch = {.view = SketchView::temperature, .values = {0.005}},
-        .hidden = {.sizes = {0.003, 0.006}, .either_sign = true}};
+        .sketch = {.view = SketchView::temperature, .values = {0.005}}};
   }
 
   template <class T>

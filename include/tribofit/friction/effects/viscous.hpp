@@ -27,7 +27,6 @@ struct Viscous {
                             .bound_scaling = BoundScaling::against_top_speed}},
             .proportional_to_speed = true,
             .sketch = {.view = SketchView::curve, .values = {0.001}},
-            .hidden = {.sizes = {0.0008, 0.0011, 0.0015}},
             .pairs = {looks_like<StribeckExponent>("run at four times the disc speed, or reach slips faster than "
                                                    "3/alpha: viscous friction keeps rising there")}};
   }

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tribofit {
@@ -14,8 +15,8 @@ namespace tribofit {
 /// An empty folder that is gone after the test.
 class Folder {
  public:
-  Folder() : path_(std::filesystem::temp_directory_path() / "tribofit-report-XXXXXX") {
-    std::string name = path_.string();
+  Folder() {
+    std::string name = (std::filesystem::temp_directory_path() / "tribofit-test-XXXXXX").string();
     path_ = ::mkdtemp(name.data());
   }
   ~Folder() {
@@ -25,7 +26,14 @@ class Folder {
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
 
+  std::string path() const { return path_.string(); }
   std::string path(const std::string& name) const { return (path_ / name).string(); }
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+  std::string write(const std::string& name, std::string_view bytes) const {
+    std::ofstream(path_ / name, std::ios::binary) << bytes;
+    return path(name);
+  }
   /// Names of everything in it, sorted, hidden files too.
   std::vector<std::string> names() const {
     std::vector<std::string> found;
@@ -39,7 +47,7 @@ class Folder {
   std::filesystem::path path_;
 };
 
-inline std::string contents(const std::string& path) {
+inline std::string contents(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
