@@ -13,7 +13,7 @@
 #include "machine_options.hpp"
 #include "parameter_options.hpp"
 #include "stated_value.hpp"
-#include "tribofit/ingest/file_names.hpp"
+#include "tribofit/ingest/channels.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -24,7 +24,7 @@ using namespace tribofit;
 
 namespace {
 
-const std::vector<std::string> kChannels(kChannelNames.begin(), kChannelNames.end());
+const std::vector<std::string> kChannels = channel_names();
 
 double positive(const std::string& text, Quantity quantity, const std::string& option,
                 const std::string& bare_unit = "") {
