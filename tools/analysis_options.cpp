@@ -7,6 +7,7 @@
 #include "exit_status.hpp"
 #include "machine_options.hpp"
 #include "settings.hpp"
+#include "tribofit/ingest/channels.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/text_of_file.hpp"

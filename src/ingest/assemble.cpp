@@ -10,7 +10,6 @@
 #include "limits.hpp"
 #include "points.hpp"
 #include "statistics/reductions.hpp"
-#include "stress.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
@@ -19,16 +18,25 @@
 namespace tribofit {
 namespace {
 
+/// Throws InputError where a stress stands over a force or the other way round, which is no coefficient, and for a
+/// shear stress alone.
+void refuse_stress_beside_force(const FileRecord& run) {
+  const bool stress = run.is_stress(Channel::force), load = run.has(Channel::load);
+  if (load && stress != run.is_stress(Channel::load)) {
+    throw InputError(
+        stress ? "friction is a shear stress and the load a force" : "friction is a force and the load a normal stress",
+        "give both as stresses or both as forces; --units states them (force=MPa,load=MPa)", {run.path, 0, ""});
+  }
+  if (!stress || load) return;
+  throw InputError("the shear stress needs the normal stress, which is not known",
+                   "name its column with --columns load=NAME:MPa, or name the column of mu", {run.path, 0, ""});
+}
+
 class Assembler {
  public:
   Assembler(FileRecord run, const ReadOptions& options) : run_(std::move(run)), options_(options) {}
 
   Trace assemble() {
-    trace_.path = run_.path;
-    trace_.checksum = run_.checksum;
-    trace_.notes = std::move(run_.notes);
-    trace_.clock_offset_std_error = run_.clock_offset_std_error;
-    trace_.warnings = std::move(run_.warnings);
     set_kind();
     set_steps();
     set_lever();
@@ -37,15 +45,11 @@ class Assembler {
     warn_of_large_coefficient();
     set_velocity();
     settle_speed();
-    if (!trace_.normal_stress.known()) trace_.load = std::move(run_[Channel::load]);
-    trace_.temperature = std::move(run_[Channel::temperature]);
-    trace_.disc_speed = std::move(run_[Channel::speed]);
-    trace_.disc_angle = std::move(run_[Channel::angle]);
+    if (trace_.normal_stress.known()) trace_.load.clear();
     unwrap(trace_.disc_angle);
-    trace_.time = std::move(run_[Channel::time]);
     if (run_.is_points()) sort_points(trace_);
     if (trace_.disc_angle.empty() && trace_.disc_speed.empty()) set_angle_turned();
-    return std::move(trace_);
+    return std::move(static_cast<Trace&>(run_));
   }
 
  private:
@@ -58,11 +62,10 @@ class Assembler {
       run_.kind_source = "the pull of a spring was recorded";
     }
     settle_kind_without_friction();
-    trace_.kind = run_.kind;
-    trace_.kind_source = run_.kind_source;
     trace_.spring = options_.spring;
     if (run_.has(Channel::std_error) && !run_.is_points()) {
       trace_.notes.emplace_back("standard errors of friction are used for points only");
+      trace_.friction_std_error.clear();
     }
   }
 
@@ -84,7 +87,6 @@ class Assembler {
   }
 
   void set_steps() {
-    trace_.steps = std::move(run_.steps);
     const auto& radii = options_.step_radii;
     refuse_other_count(radii.size());
     if (options_.conditions.radius.known()) refuse_radius(options_.conditions.radius.value);
@@ -163,15 +165,12 @@ class Assembler {
   void set_load() {
     auto& load = run_[Channel::load];
     if (load.empty()) return;
-    double sum = 0;
-    for (const double value : load) sum += value;
     if (std::all_of(load.begin(), load.end(), [](double value) { return value < 0; })) {
       for (double& value : load) value = -value;
-      sum = -sum;
       trace_.notes.push_back("the load is negative throughout and was taken as compression");
     }
-    const double mean = sum / static_cast<double>(load.size());
-    if (is_stress(run_, Channel::load)) {
+    const double mean = mean_load(load, {0, load.size(), "", {}}).value;
+    if (run_.is_stress(Channel::load)) {
       trace_.normal_stress = {mean, "file"};
     } else if (!trace_.conditions.load.known()) {
       trace_.conditions.load = {mean, "file"};
@@ -192,7 +191,6 @@ class Assembler {
   }
 
   void set_std_error() {
-    trace_.friction_std_error = std::move(run_[Channel::std_error]);
     for (std::size_t i = 0; i < trace_.friction_std_error.size(); ++i) {
       if (trace_.friction_std_error[i] > 0) continue;
       throw InputError("a standard error must be above zero",
@@ -210,30 +208,26 @@ class Assembler {
     if (run_.is_points()) set_std_error();
     if (run_.kind == RecordKind::motion_only) {  // follows from the motion, kinematics/ makes it
       if (!run_.has(Channel::x_b)) refuse_columns(run_, "no displacement column (x_b)");
+      trace_.friction.clear();
       return;
     }
     const bool spring = run_.has(Channel::spring) && run_.kind == RecordKind::spring_slider;
     if (spring) {
-      trace_.friction = std::move(run_[Channel::spring]);
       const Column* column = run_.columns.find(Channel::spring);
       if (column == nullptr || !column->over_load) divide_by_load("pull of the spring");
       return;
     }
-    if (run_.has(Channel::mu)) {
-      trace_.friction = std::move(run_[Channel::mu]);
-      return;
-    }
+    if (run_.has(Channel::mu)) return;
     const bool torque = run_.has(Channel::torque);
     if (!torque && !run_.has(Channel::force)) refuse_columns(run_, "no friction column (mu, force or torque)");
     if (!torque) refuse_stress_beside_force(run_);
-    trace_.friction = std::move(run_[torque ? Channel::torque : Channel::force]);
     if (torque) {
       for (const Step& step : trace_.steps) {
         const double radius = radius_of(step, "friction from a torque");
         for (std::size_t i = step.begin; i < step.end; ++i) divide_friction(i, radius);
       }
     }
-    divide_by_load(torque ? "torque/radius" : is_stress(run_, Channel::force) ? "shear stress" : "tangential force");
+    divide_by_load(torque ? "torque/radius" : run_.is_stress(Channel::force) ? "shear stress" : "tangential force");
   }
 
   void divide_by_load(const std::string& force) {
@@ -301,21 +295,17 @@ class Assembler {
     const bool is_spring_slider = run_.kind == RecordKind::spring_slider,
                is_motion_only = run_.kind == RecordKind::motion_only;
     trace_.velocity_kind = VelocityKind::relative;
-    if (is_spring_slider || run_.kind == RecordKind::force_only) return;  // follows from the pull, or not at all
+    if (is_spring_slider || run_.kind == RecordKind::force_only)  // follows from the pull, or not at all
+      return keep_motion({});
     if (run_.is_driven()) return set_load_point();
     if (is_motion_only || (run_.has_position() && !block && !relative)) {  // kinematics/ makes it of the displacement
       if (!is_motion_only && !run_.has(Channel::x_d)) trace_.velocity_kind = VelocityKind::block;
-      trace_.block_position = std::move(run_[Channel::x_b]);
-      trace_.drive_position = std::move(run_[Channel::x_d]);
-      return;
+      return keep_motion({&Trace::block_position, &Trace::drive_position});
     }
-    if (!block && !relative) {
-      set_fixed_block();
-      return;
-    }
+    keep_motion({&Trace::velocity});
+    if (!block && !relative) return set_fixed_block();
     trace_.velocity_kind = block && !run_.is_points() ? VelocityKind::block : VelocityKind::relative;
     const Channel channel = block ? Channel::v_b : Channel::v_r;
-    trace_.velocity = std::move(run_[channel]);
     const Column* column = run_.columns.find(channel);
     if (column == nullptr || !column->angular) return;
     if (!block && !run_.is_points() && !options_.conditions.speed.known()) turning_ = trace_.velocity;
@@ -327,13 +317,22 @@ class Assembler {
         fmt::format("{} is the rotational speed in column {} times the radius", to_string(channel), column->name));
   }
 
+  using Values = std::vector<double> Trace::*;
+  /// Clears what else there is of motion.
+  void keep_motion(std::initializer_list<Values> kept) {
+    for (const Values values :
+         {&Trace::velocity, &Trace::block_position, &Trace::drive_position, &Trace::load_point_speed}) {
+      if (std::find(kept.begin(), kept.end(), values) == kept.end()) (trace_.*values).clear();
+    }
+  }
+
   /// How the load point moved: as stated, else its speed, else its displacement.
   void set_load_point() {
     trace_.load_point = options_.load_point;
-    if (!trace_.load_point.empty()) return;
-    trace_.drive_position = std::move(run_[Channel::x_d]);
-    if (trace_.drive_position.empty()) trace_.load_point_speed = std::move(run_[Channel::v_lp]);
-    if (!trace_.drive_position.empty() || !trace_.load_point_speed.empty()) return;
+    if (!trace_.load_point.empty()) return keep_motion({});
+    if (!trace_.drive_position.empty()) return keep_motion({&Trace::drive_position});
+    keep_motion({&Trace::load_point_speed});
+    if (!trace_.load_point_speed.empty()) return;
     refuse_columns(run_, "no displacement (x_d) or speed (v_lp) of the load point");
   }
 
@@ -350,7 +349,7 @@ class Assembler {
   /// Points of a block that stands still on a disc.
   void set_points_over_disc() {
     trace_.velocity_kind = VelocityKind::relative;
-    trace_.velocity = std::move(run_[Channel::speed]);
+    trace_.velocity = std::move(trace_.disc_speed);
     const double radius = radius_of(trace_.steps.front(), "the sliding velocity of a fixed block");
     for (double& v : trace_.velocity) v *= radius;
     trace_.notes.emplace_back("no sliding velocity: the block is taken as fixed, v_r = omega r");
@@ -387,7 +386,7 @@ class Assembler {
 
   FileRecord run_;
   const ReadOptions& options_;
-  Trace trace_;
+  Trace& trace_ = run_;
   std::vector<double> turning_;  ///< rotational speed between the parts [rad/s], where it is all that was recorded
 };
 

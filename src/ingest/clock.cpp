@@ -203,7 +203,7 @@ class Clock {
 
 std::size_t rows_of(const FileRecord& recording) {
   std::size_t rows = 0;
-  for (const auto& channel : recording.channels) rows = std::max(rows, channel.size());
+  for (const Channel channel : recording.present()) rows = std::max(rows, recording[channel].size());
   return rows;
 }
 

@@ -7,65 +7,19 @@
 #include <charconv>
 #include <vector>
 
-#include "tribofit/ingest/file_names.hpp"
 #include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 namespace {
 
-struct Names {
-  Channel channel;
-  std::vector<std::string_view> names;  // lower case without separators, the most usual first
-};
-
-const std::vector<Names>& names_of_the_field() {
-  static const std::vector<Names> table = {
-      {Channel::time,
-       {"time", "t", "timestamp", "elapsedtime", "testtime", "steptime", "xvalue", "zeit", "temps", "\u65f6\u95f4"}},
-      {Channel::mu,
-       {"mu", "\u03bc", "\u00b5", "cof", "frictioncoefficient", "coefficientoffriction", "coeffriction",
-        "coeffoffriction", "friction", "frictioncoeff", "tractioncoeff", "tractioncoefficient", "reibwert",
-        "reibungszahl", "reibungskoeffizient", "\u6469\u64e6\u7cfb\u6570", "\u6469\u64e6\u56e0\u6570"}},
-      {Channel::v_b,
-       {"vb", "blockvelocity", "blockspeed", "vibrometer", "velocity", "vibrometervelocity", "v", "geschwindigkeit",
-        "\u901f\u5ea6"}},
-      {Channel::v_r,
-       {"vr", "slidingvelocity", "relativevelocity", "slidingspeed", "rubbingvelocity", "rubbingspeed", "rubbing",
-        "vrel", "slipvelocity", "vslip", "gleitgeschwindigkeit", "\u76f8\u5bf9\u901f\u5ea6",
-        "\u6ed1\u52a8\u901f\u5ea6"}},
-      {Channel::force,
-       {"ft", "frictionforce", "tangentialforce", "fx", "ff", "ffriction", "force", "lateralforce", "tractionforce",
-        "kraft", "reibkraft", "shearforce", "shearload", "shearstress", "shrstress", "shstress", "tau", "schubspannung",
-        "\u6469\u64e6\u529b"}},
-      {Channel::torque,
-       {"torque", "frictiontorque", "m", "moment", "drehmoment", "reibmoment", "\u626d\u77e9", "\u8f6c\u77e9"}},
-      {Channel::load,
-       {"fn", "normalforce", "load", "normalload", "fz", "weight", "wob", "weightonbit", "ballload", "normalkraft",
-        "normalstress", "effectivenormalstress", "effnormalstress", "norstress", "sigman", "normalspannung",
-        "\u8f7d\u8377", "\u6b63\u538b\u529b", "\u6cd5\u5411\u529b"}},
-      {Channel::speed,
-       {"discspeed", "diskspeed", "rpm", "speed", "rotationalspeed", "rotaryvelocity", "spindlespeed", "omega",
-        "discvelocity", "angularvelocity", "rotaryspeed", "drehzahl", "\u8f6c\u901f"}},
-      {Channel::angle,
-       {"angle", "discangle", "diskangle", "rotaryposition", "theta", "phi", "position", "winkel", "\u89d2\u5ea6"}},
-      {Channel::temperature, {"temperature", "temp", "temperatur", "\u6e29\u5ea6"}},
-      {Channel::std_error,
-       {"stderror", "standarderror", "stderr", "muerror", "mustderror", "frictionstderror", "uncertainty", "sem",
-        "se"}},
-      {Channel::spring, {"spring", "springforce", "springpull", "pull", "fspring", "federkraft"}},
-      {Channel::x_b,
-       {"xb", "blockdisplacement", "blockposition", "sliderdisplacement", "sliderposition", "massdisplacement"}},
-      {Channel::x_d,
-       {"xd", "drivedisplacement", "driveposition", "basedisplacement", "baseposition", "stagedisplacement",
-        "stageposition", "carriagedisplacement", "carriageposition", "lpdisp", "lpdisplacement",
-        "loadpointdisplacement", "loadpointdisp", "lpdispl", "loadpointposition", "loadpoint", "xlp", "ramdisplacement",
-        "pistondisplacement"}},
-      {Channel::v_lp,
-       {"vlp", "loadpointvelocity", "loadpointspeed", "loadpointrate", "lpvelocity", "lpspeed", "drivevelocity",
-        "drivingvelocity", "ramvelocity"}},
-      {Channel::step, {kStepColumn, "recipestep", "stepnumber", "segment"}},
-  };
-  return table;
+/// Which of the names divided by blanks this one is; no_rank: none.
+std::size_t place_of(std::string_view name, std::string_view names) {
+  for (std::size_t place = 0; !names.empty(); ++place) {
+    const std::size_t end = std::min(names.find(' '), names.size());
+    if (names.substr(0, end) == name) return place;
+    names.remove_prefix(std::min(end + 1, names.size()));
+  }
+  return no_rank;
 }
 
 /// Names that need a unit to be believed: a velocity is as often the carriage's, a position a height.
@@ -102,7 +56,7 @@ std::string base_of(std::string_view text) {
 
 /// Quantity in the numerator of a sensitivity, as the channel's own.
 std::optional<double> value_in(std::string_view number, std::string_view unit, Channel channel) {
-  for (const Quantity quantity : quantities(channel)) {
+  for (const Quantity quantity : info_of(channel).quantities) {
     if (find_unit(unit, quantity)) {
       return parse_quantity(std::string(number) + std::string(unit), quantity, to_string(channel));
     }
@@ -116,27 +70,25 @@ std::string lists_columns(const std::string& path) {
   return fmt::format("'identify columns {}' lists what it holds", path);
 }
 
-std::string_view to_string(Channel channel) {
-  return kChannelNames[index_of(channel)];
-}
-
 const Column* Columns::find(Channel channel) const {
   const auto at = std::find_if(used.begin(), used.end(), [&](const Column& c) { return c.channel == channel; });
   return at != used.end() ? &*at : nullptr;
 }
 
+std::vector<std::string> channel_names() {
+  std::vector<std::string> names;
+  for (const ChannelInfo& channel : channel_infos) names.emplace_back(channel.key);
+  return names;
+}
+
 bool is_field_name(std::string_view base) {
-  const auto& table = names_of_the_field();
-  return std::any_of(table.begin(), table.end(), [&](const Names& names) {
-    return std::find(names.names.begin(), names.names.end(), base) != names.names.end();
-  });
+  return std::ranges::any_of(channel_infos, [&](const ChannelInfo& c) { return place_of(base, c.names) != no_rank; });
 }
 
 std::size_t name_rank(std::string_view base, Channel channel, std::optional<Quantity> quantity) {
-  const auto& table = names_of_the_field();
-  const auto allowed = quantities(channel);
+  const auto allowed = info_of(channel).quantities;
   const bool rotates = quantity == Quantity::angular_velocity;
-  const bool fits = !quantity || allowed.empty() ||
+  const bool fits = !quantity || allowed.size() == 0 ||
                     std::find(allowed.begin(), allowed.end(), *quantity) != allowed.end() ||
                     *quantity == Quantity::voltage;
   if (needs_unit(base, channel) && !(quantity && fits)) return no_rank;
@@ -148,64 +100,7 @@ std::size_t name_rank(std::string_view base, Channel channel, std::optional<Quan
   if ((channel == Channel::speed || channel == Channel::angle) && !fits) return no_rank;
   if (channel == Channel::force && base == "friction" && quantity == Quantity::force) return 100;
   if (channel == Channel::mu && base == "friction" && quantity == Quantity::force) return no_rank;
-  const auto& names = table[index_of(channel)].names;
-  const auto at = std::find(names.begin(), names.end(), base);
-  return at == names.end() ? no_rank : static_cast<std::size_t>(at - names.begin());
-}
-
-std::span<const Quantity> quantities(Channel channel) {
-  static constexpr std::array velocity = {Quantity::velocity, Quantity::angular_velocity};
-  static constexpr std::array<Quantity, 1> time = {Quantity::time}, mu = {Quantity::dimensionless},
-                                           torque = {Quantity::torque}, speed = {Quantity::angular_velocity},
-                                           angle = {Quantity::angle}, temperature = {Quantity::temperature},
-                                           length = {Quantity::length}, load_point = {Quantity::velocity};
-  static constexpr std::array force_or_stress = {Quantity::force, Quantity::pressure};
-  static constexpr std::array friction = {Quantity::dimensionless, Quantity::force, Quantity::torque};
-  static constexpr std::array pull = {Quantity::force, Quantity::dimensionless};
-  switch (channel) {
-    case Channel::time:
-      return time;
-    case Channel::mu:
-      return mu;
-    case Channel::v_b:
-    case Channel::v_r:
-      return velocity;
-    case Channel::force:
-    case Channel::load:
-      return force_or_stress;
-    case Channel::torque:
-      return torque;
-    case Channel::speed:
-      return speed;
-    case Channel::angle:
-      return angle;
-    case Channel::temperature:
-      return temperature;
-    case Channel::std_error:
-      return friction;
-    case Channel::spring:
-      return pull;
-    case Channel::x_b:
-    case Channel::x_d:
-      return length;
-    case Channel::v_lp:
-      return load_point;
-    case Channel::step:
-      break;
-  }
-  return {};
-}
-
-std::string_view usual_unit(Channel channel) {
-  static constexpr std::array<std::string_view, channel_count> units = {
-      "s", "1", "mm/s", "mm/s", "N", "Nm", "N", "rpm", "deg", "degC", "1", "N", "mm", "mm", "um/s", ""};
-  return units[index_of(channel)];
-}
-
-std::string_view si_unit(Channel channel) {
-  static constexpr std::array<std::string_view, channel_count> units = {
-      "s", "1", "m/s", "m/s", "N", "N m", "N", "rad/s", "rad", "degC", "1", "N", "m", "m", "m/s", ""};
-  return units[index_of(channel)];
+  return place_of(base, info_of(channel).names);
 }
 
 bool names_rpm(std::string_view base) {

@@ -2,7 +2,6 @@
 
 #include <limits>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -21,13 +20,6 @@ std::size_t name_rank(std::string_view base, Channel channel, std::optional<Quan
 
 /// Whether `base` is a name of any channel.
 bool is_field_name(std::string_view base);
-
-/// Quantities a channel may be given in, the usual one first.
-std::span<const Quantity> quantities(Channel channel);
-
-/// The unit people use ("mm/s"), and that of SI, for messages.
-std::string_view usual_unit(Channel channel);
-std::string_view si_unit(Channel channel);
 
 /// Whether the name itself says that the numbers are revolutions per minute.
 bool names_rpm(std::string_view base);

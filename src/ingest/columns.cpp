@@ -10,14 +10,12 @@
 
 #include "column_names.hpp"
 #include "load_point_columns.hpp"
-#include "tribofit/ingest/file_names.hpp"
+#include "tribofit/ingest/channels.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 namespace {
-
-static_assert(kChannelNames.size() == channel_count);
 
 /// What the user asks of one channel.
 struct Request {
@@ -71,7 +69,7 @@ class Finder {
   const RawColumn& column(std::size_t index) const { return table_.columns[index]; }
 
   void read_requests(const ReadOptions& options) {
-    const std::vector<std::string> known(kChannelNames.begin(), kChannelNames.end());
+    const std::vector<std::string> known = channel_names();
     const auto slot = [&](const std::string& name, const char* option) -> Request& {
       const auto at = std::find(known.begin(), known.end(), name);
       if (at == known.end()) {
@@ -116,7 +114,8 @@ class Finder {
     for (std::size_t i = 0; i < channel_count; ++i) {
       for (std::size_t k = i + 1; k < channel_count; ++k) {
         if (!taken_[i] || taken_[i] != taken_[k]) continue;
-        throw InputError(fmt::format("is named for {} and for {}", kChannelNames[i], kChannelNames[k]),
+        throw InputError(fmt::format("is named for {} and for {}", to_string(static_cast<Channel>(i)),
+                                     to_string(static_cast<Channel>(k))),
                          "a column holds one channel: name another with --columns", table_.heading(*taken_[i]));
       }
     }
@@ -272,7 +271,7 @@ class Finder {
       if (in_file && !in_file->empty()) used.factor *= find_unit(*in_file, Quantity::voltage).value_or(Unit{}).factor;
       return true;
     }
-    for (const Quantity quantity : quantities(channel)) {
+    for (const Quantity quantity : info_of(channel).quantities) {
       if (const auto unit = find_unit(text, quantity)) {
         used.factor = unit->factor;
         used.offset = unit->offset;
@@ -307,7 +306,7 @@ class Finder {
     InputLocation where = table_.heading(used.index);
     if (column(used.index).unit_line > 0) where.line = column(used.index).unit_line;  // apart from the name
     const std::string advice =
-        fmt::format("state the unit of {0} with --units {0}={1}", to_string(used.channel), usual_unit(used.channel));
+        fmt::format("state the unit of {0} with --units {0}={1}", to_string(used.channel), info_of(used.channel).unit);
     const auto unit = find_unit(text);
     if (!unit) {
       const std::string nearest = suggest_unit(text);
@@ -317,41 +316,28 @@ class Finder {
     if (unit->quantity == Quantity::voltage) {
       throw InputError("is in volts",
                        fmt::format("state the sensitivity with --units {0}=\"5 {1}/V\"", to_string(used.channel),
-                                   usual_unit(used.channel)),
+                                   info_of(used.channel).unit),
                        where);
     }
     throw InputError(fmt::format("unit '{}' is {}, not {}", text, with_article(to_string(unit->quantity)),
-                                 with_article(to_string(quantities(used.channel).front()))),
+                                 with_article(to_string(*info_of(used.channel).quantities.begin()))),
                      advice, where);
   }
 
   bool without_unit(Column& used) {
-    switch (used.channel) {
-      case Channel::mu:
-      case Channel::step:
-        return true;
-      case Channel::std_error:  // as friction is
-        used.factor = friction_factor();
-        return true;
-      case Channel::v_b:
-      case Channel::v_r:
-      case Channel::x_b:
-      case Channel::x_d:
-      case Channel::v_lp:
-      case Channel::speed:
-      case Channel::angle:
-        break;
-      default:
-        result_.notes.push_back(fmt::format("{} in column {} has no unit and was taken in {}", to_string(used.channel),
-                                            used.name, si_unit(used.channel)));
-        return true;
+    const ChannelInfo& channel = info_of(used.channel);
+    if (channel.unitless == Unitless::friction) used.factor = friction_factor();
+    if (channel.unitless == Unitless::si) {
+      result_.notes.push_back(fmt::format("{} in column {} has no unit and was taken in {}", to_string(used.channel),
+                                          used.name, channel.si_unit));
     }
+    if (channel.unitless != Unitless::unknown) return true;
     if (used.channel == Channel::speed && names_rpm(parse_column_name(column(used.index).name).base)) {
       used.factor = find_unit("rpm")->factor;
       return true;
     }
     const bool is_machine = used.channel == Channel::x_d && names_load_point(used.plain_name);
-    const std::string_view unit = is_machine ? "um" : usual_unit(used.channel);
+    const std::string_view unit = is_machine ? "um" : info_of(used.channel).unit;
     const std::string advice = fmt::format("state it with --units {}={}", to_string(used.channel), unit);
     const bool velocity = taken_[index_of(Channel::v_b)] || taken_[index_of(Channel::v_r)];
     const bool needed = used.channel != Channel::angle && (used.channel != Channel::speed || !velocity);

@@ -1,45 +1,18 @@
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "raw_table.hpp"
+#include "tribofit/ingest/channels.hpp"
 #include "tribofit/ingest/read_trace.hpp"
-#include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
 
-enum class Channel {
-  time,
-  mu,
-  v_b,
-  v_r,
-  force,
-  torque,
-  load,
-  speed,
-  angle,
-  temperature,
-  std_error,
-  spring,
-  x_b,
-  x_d,
-  v_lp,
-  step
-};
-constexpr std::size_t channel_count = 16;
-constexpr std::size_t index_of(Channel channel) {
-  return static_cast<std::size_t>(channel);
-}
-
 /// What to do where the columns of a file are not known, for messages.
 std::string lists_columns(const std::string& path);
-
-/// "time", "mu", "v_b", ... as on the command line.
-std::string_view to_string(Channel channel);
 
 /// A column that holds a channel, and how its numbers become SI: factor * number + offset.
 struct Column {

@@ -78,8 +78,8 @@ void exclude(const std::vector<std::size_t>& rows, std::string_view what, FileRe
                                            rows.size() == 1 ? "was" : "were", rows.size() == 1 ? "a gap" : "gaps", unit,
                                            plural, listed(places)));
   std::size_t size = 0;
-  for (auto& channel : recording.channels) {
-    if (channel.empty()) continue;
+  for (const Channel which : recording.present()) {
+    std::vector<double>& channel = recording[which];
     size = channel.size();
     std::size_t to = rows.front(), next = 0;
     for (std::size_t i = to; i < size; ++i) {

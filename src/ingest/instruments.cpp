@@ -10,7 +10,6 @@
 
 #include "input_file.hpp"
 #include "limits.hpp"
-#include "tribofit/ingest/file_names.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"

@@ -17,13 +17,6 @@
 namespace tribofit {
 namespace {
 
-const std::vector<double>& friction_of(const FileRecord& r) {
-  return r.has(Channel::mu) ? r[Channel::mu] : r.has(Channel::force) ? r[Channel::force] : r[Channel::torque];
-}
-const std::vector<double>& velocity_of(const FileRecord& r) {
-  return r.has(Channel::v_b) ? r[Channel::v_b] : r[Channel::v_r];
-}
-
 /// Linear interpolation of evenly or unevenly spaced samples at `base - offset`, which must lie within `time`.
 std::vector<double> interpolate(const std::vector<double>& base, double offset, const std::vector<double>& time,
                                 const std::vector<double>& values) {
@@ -40,8 +33,8 @@ std::vector<double> interpolate(const std::vector<double>& base, double offset, 
 
 /// Keeps rows [begin, end) and starts their time at 0.
 void crop(FileRecord& run, std::size_t begin, std::size_t end) {
-  for (auto& channel : run.channels) {
-    if (channel.empty()) continue;
+  for (const Channel which : run.present()) {
+    std::vector<double>& channel = run[which];
     channel.resize(end);
     channel.erase(channel.begin(), channel.begin() + static_cast<std::ptrdiff_t>(begin));
   }
@@ -70,9 +63,9 @@ double find_offset(FileRecord& run, const FileRecord& other, const ClockOffsetFi
   const bool overlap = std::abs(as_written) < run[Channel::time].back();
   ClockOffset found;
   if (find && run.has_friction() && other.has_velocity()) {
-    found = find(run[Channel::time], friction_of(run), other[Channel::time], velocity_of(other));
+    found = find(run[Channel::time], run.friction, other[Channel::time], other.velocity);
   } else if (find && run.has_velocity() && other.has_friction()) {
-    found = find(other[Channel::time], friction_of(other), run[Channel::time], velocity_of(run));
+    found = find(other[Channel::time], other.friction, run[Channel::time], run.velocity);
     found.offset = -found.offset, found.drift = -found.drift;
   }
   if (!run.has_friction() && !other.has_friction()) {
@@ -120,6 +113,13 @@ void add_channels(FileRecord& run, const FileRecord& other, double offset) {
   for (const Column& column : other.columns.used) {
     const Channel channel = column.channel;
     if (channel == Channel::time || channel == Channel::step || run.has(channel)) continue;
+    const auto same_place = [&](const Column& c) { return info_of(c.channel).target == info_of(channel).target; };
+    const auto there = std::find_if(run.columns.used.begin(), run.columns.used.end(), same_place);
+    if (there != run.columns.used.end()) {  // mu beside a force, v_b beside v_r:
+                                            // the first of them is meant
+      if (index_of(there->channel) < index_of(channel)) continue;
+      run.columns.used.erase(there);
+    }
     run[channel] = interpolate(run[Channel::time], offset - start, time, other[channel]);
     run.columns.used.push_back(column);
     run.second_channels.push_back(channel);

@@ -15,7 +15,6 @@
 #include "reader.hpp"
 #include "recording.hpp"
 #include "statistics/reductions.hpp"
-#include "tribofit/ingest/file_names.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
@@ -45,7 +44,8 @@ std::string channel_named(const RawColumn& column) {
   const auto unit = find_unit(unit_of(column, name));
   const auto quantity = unit && !unit_of(column, name).empty() ? std::optional(unit->quantity) : std::nullopt;
   for (std::size_t k = 0; column.named && k < channel_count; ++k) {
-    if (name_rank(name.base, static_cast<Channel>(k), quantity) != no_rank) return std::string(kChannelNames[k]);
+    if (name_rank(name.base, static_cast<Channel>(k), quantity) != no_rank)
+      return std::string(to_string(static_cast<Channel>(k)));
   }
   return {};
 }

@@ -38,7 +38,7 @@ bool is_no_clock(const std::vector<double>& time) {
 
 void set_points(FileRecord& recording) {
   std::size_t rows = 0;
-  for (const auto& channel : recording.channels) rows = std::max(rows, channel.size());
+  for (const Channel channel : recording.present()) rows = std::max(rows, recording[channel].size());
   recording[Channel::time] = numbers_from_zero(rows);
   for (const Channel of_time : {Channel::step, Channel::angle}) recording[of_time].clear();
   recording.clock_end = rows > 0 ? static_cast<double>(rows - 1) : 0;

@@ -106,10 +106,11 @@ void load_columns(RawTable& table, const std::vector<Column>& used, int threads)
 
 /// Of the values of each channel in SI: a record is the same in whatever format it was written.
 std::uint64_t checksum_of(const FileRecord& run, int threads) {
-  std::vector<std::uint64_t> of_channels(run.channels.size(), 0);
+  std::vector<std::uint64_t> of_channels(channel_count, 0);
   run_tasks(of_channels.size(), threads, [&](std::size_t k) {
-    const std::vector<double>& values = run.channels[k];
-    if (!values.empty())
+    const auto channel = static_cast<Channel>(k);
+    const std::vector<double>& values = run[channel];
+    if (run.has(channel))
       of_channels[k] = xxh64({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)}, k);
   });
   return xxh64({reinterpret_cast<const char*>(of_channels.data()), of_channels.size() * sizeof(std::uint64_t)}, 0);
@@ -138,7 +139,7 @@ void to_si(const Column& column, std::vector<double>& values, int threads) {
 void recognise_points(const RowsPlan& plan, FileRecord& recording) {
   const std::vector<double>& time = recording[Channel::time];
   if (!plan.may_be_points || !(time.empty() || (time.size() <= kMostTabulated && is_no_clock(time)))) return;
-  const std::size_t rows = recording.channels[index_of(plan.columns.used.front().channel)].size();
+  const std::size_t rows = recording[plan.columns.used.front().channel].size();
   if (time.empty() && rows > kMostTabulated) refuse_columns(recording, "no time column");
   recording.kind = RecordKind::points;
   recording.kind_source = time.empty() ? "no time column" : "the times are in no order";
@@ -337,10 +338,8 @@ void continue_recording(FileRecord& run, FileRecord next, std::size_t number) {
                                 : fmt::format("{} continues the run; its clock restarts and was joined without a pause",
                                               file_name(next.path)));
   for (double& t : next[Channel::time]) t += shift;
-  for (std::size_t k = 0; k < channel_count; ++k) {
-    if (run.channels[k].empty()) continue;
-    run.channels[k].insert(run.channels[k].end(), next.channels[k].begin(), next.channels[k].end());
-  }
+  for (const Channel channel : run.present())
+    run[channel].insert(run[channel].end(), next[channel].begin(), next[channel].end());
   for (std::size_t i = 0; i < next.steps.size(); ++i) {
     Step step = next.steps[i];
     step.begin += before;
@@ -354,6 +353,14 @@ void continue_recording(FileRecord& run, FileRecord next, std::size_t number) {
   run.parts.push_back({before, next.path, std::move(next.lines)});
   for (const std::string& note : next.notes) run.notes.push_back(fmt::format("file {}: {}", number, note));
   for (const std::string& warning : next.warnings) run.warnings.push_back(fmt::format("file {}: {}", number, warning));
+}
+
+std::vector<Channel> FileRecord::present() const {
+  std::vector<Channel> channels;
+  for (std::size_t k = 0; k < channel_count; ++k) {
+    if (has(static_cast<Channel>(k))) channels.push_back(static_cast<Channel>(k));
+  }
+  return channels;
 }
 
 InputLocation FileRecord::location(std::size_t row, Channel channel) const {

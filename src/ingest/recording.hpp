@@ -1,8 +1,5 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,14 +12,14 @@
 
 namespace tribofit {
 
-/// What one file holds: channels in SI as recorded, before friction and motion are made of them.
-struct FileRecord {
-  std::string path;
-  std::uint64_t checksum = 0;  ///< as in Trace
+/// A trace that is being read: channels in SI as recorded, before friction and motion are made of them, and where they
+/// came from.
+struct FileRecord : Trace {
   Columns columns;
   std::vector<std::string> column_names;
-  bool has_names = true;                                    ///< the file names its columns
-  std::array<std::vector<double>, channel_count> channels;  ///< empty when absent
+  bool has_names = true;            ///< the file names its columns
+  std::vector<double> step_column;  ///< which step of a recipe each row belongs
+                                    ///< to; empty when absent
   LineMap lines;
   struct Part {
     std::size_t begin;  ///< first row
@@ -34,27 +31,34 @@ struct FileRecord {
   std::string second_path;                ///< of the other instrument's file
   std::vector<Channel> second_channels;   ///< that came from it
   double clock_start = 0, clock_end = 0;  ///< first and last time as written [s]
-  double clock_offset_std_error = 0;      ///< as in Trace
   Conditions file_conditions;             ///< that the file states for all its steps
   std::vector<RawStep> stated_steps;      ///< as the file divides itself
-  std::vector<Step> steps;                ///< with the conditions that the file states
   std::vector<std::size_t> recipe_steps;  ///< per step: which step of the recipe it belongs to, from 0
-  std::optional<RecordKind> kind;         ///< as stated, or as the file shows it
-  std::string kind_source;                ///< as in Trace
   std::string unused_displacement;        ///< column of a displacement of which nothing more is known
-  std::vector<std::string> notes, warnings;
 
   bool is_points() const { return kind == RecordKind::points; }
   bool is_driven() const { return is_driven_in_steps(kind); }
-  std::vector<double>& operator[](Channel channel) { return channels[index_of(channel)]; }
-  const std::vector<double>& operator[](Channel channel) const { return channels[index_of(channel)]; }
-  bool has(Channel channel) const { return !channels[index_of(channel)].empty(); }
+  /// The values of a channel, or of another one that goes to the same place:
+  /// has() says which is there.
+  std::vector<double>& operator[](Channel channel) {
+    return channel == Channel::step ? step_column : this->*info_of(channel).target;
+  }
+  const std::vector<double>& operator[](Channel channel) const { return const_cast<FileRecord&>(*this)[channel]; }
+  bool has(Channel channel) const {
+    const bool is_there = channel == Channel::time || columns.find(channel) != nullptr;
+    return is_there && !(*this)[channel].empty();
+  }
+  std::vector<Channel> present() const;
+  /// Whether a force was recorded over an area [Pa].
+  bool is_stress(Channel channel) const {
+    const Column* column = columns.find(channel);
+    return column != nullptr && column->stress;
+  }
   bool has_friction() const {
     return has(Channel::mu) || has(Channel::force) || has(Channel::torque) || has(Channel::spring);
   }
   bool has_velocity() const { return has(Channel::v_b) || has(Channel::v_r); }
   bool has_position() const { return has(Channel::x_b) || has(Channel::x_d); }
-  std::size_t size() const { return channels[index_of(Channel::time)].size(); }
   /// Where a row came from, for messages.
   InputLocation location(std::size_t row, Channel channel) const;
   /// "line 22", or "value 21" where the file has no lines.

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "unit_spelling.hpp"
@@ -80,52 +82,42 @@ constexpr std::array symbols = {
 struct Kind {
   Quantity quantity;
   Dimensions dimensions;
-  std::string_view name;
+  std::string_view name, example;
 };
 
 constexpr std::array kinds = {
-    Kind{Quantity::dimensionless, {}, "dimensionless number"},
-    Kind{Quantity::time, {0, 0, 1, 0, 0, 0, 0}, "time"},
-    Kind{Quantity::length, {1, 0, 0, 0, 0, 0, 0}, "length"},
-    Kind{Quantity::velocity, {1, 0, -1, 0, 0, 0, 0}, "velocity"},
-    Kind{Quantity::angular_velocity, {0, 0, -1, 1, 0, 0, 0}, "angular velocity"},
-    Kind{Quantity::acceleration, {1, 0, -2, 0, 0, 0, 0}, "acceleration"},
-    Kind{Quantity::force, {1, 1, -2, 0, 0, 0, 0}, "force"},
-    Kind{Quantity::torque, {2, 1, -2, 0, 0, 0, 0}, "torque"},
-    Kind{Quantity::mass, {0, 1, 0, 0, 0, 0, 0}, "mass"},
-    Kind{Quantity::stiffness, {0, 1, -2, 0, 0, 0, 0}, "stiffness"},
-    Kind{Quantity::damping, {0, 1, -1, 0, 0, 0, 0}, "damping"},
-    Kind{Quantity::frequency, {0, 0, -1, 0, 0, 0, 1}, "frequency"},
-    Kind{Quantity::angle, {0, 0, 0, 1, 0, 0, 0}, "angle"},
-    Kind{Quantity::temperature, {0, 0, 0, 0, 1, 0, 0}, "temperature"},
-    Kind{Quantity::voltage, {0, 0, 0, 0, 0, 1, 0}, "voltage"},
-    Kind{Quantity::inverse_velocity, {-1, 0, 1, 0, 0, 0, 0}, "inverse velocity"},
-    Kind{Quantity::inverse_square_of_velocity, {-2, 0, 2, 0, 0, 0, 0}, "inverse square of a velocity"},
-    Kind{Quantity::inverse_length, {-1, 0, 0, 0, 0, 0, 0}, "inverse length"},
-    Kind{Quantity::inverse_time, {0, 0, -1, 0, 0, 0, 0}, "inverse time"},
-    Kind{Quantity::inverse_temperature, {0, 0, 0, 0, -1, 0, 0}, "inverse temperature"},
-    Kind{Quantity::pressure, {-1, 1, -2, 0, 0, 0, 0}, "stress"},
+    Kind{Quantity::dimensionless, {}, "dimensionless number", "0.3 or 30 %"},
+    Kind{Quantity::time, {0, 0, 1, 0, 0, 0, 0}, "time", "0.5s or 20ms"},
+    Kind{Quantity::length, {1, 0, 0, 0, 0, 0, 0}, "length", "15mm or 0.015m"},
+    Kind{Quantity::velocity, {1, 0, -1, 0, 0, 0, 0}, "velocity", "6.3mm/s"},
+    Kind{Quantity::angular_velocity, {0, 0, -1, 1, 0, 0, 0}, "angular velocity", "4rpm or 0.419rad/s"},
+    Kind{Quantity::acceleration, {1, 0, -2, 0, 0, 0, 0}, "acceleration", "0.5m/s^2"},
+    Kind{Quantity::force, {1, 1, -2, 0, 0, 0, 0}, "force", "50N"},
+    Kind{Quantity::torque, {2, 1, -2, 0, 0, 0, 0}, "torque", "2.5Nm"},
+    Kind{Quantity::mass, {0, 1, 0, 0, 0, 0, 0}, "mass", "0.1kg"},
+    Kind{Quantity::stiffness, {0, 1, -2, 0, 0, 0, 0}, "stiffness", "12N/mm"},
+    Kind{Quantity::damping, {0, 1, -1, 0, 0, 0, 0}, "damping", "3Ns/m"},
+    Kind{Quantity::frequency, {0, 0, -1, 0, 0, 0, 1}, "frequency", "20kHz"},
+    Kind{Quantity::angle, {0, 0, 0, 1, 0, 0, 0}, "angle", "90deg or 1.57rad"},
+    Kind{Quantity::temperature, {0, 0, 0, 0, 1, 0, 0}, "temperature", "23degC"},
+    Kind{Quantity::voltage, {0, 0, 0, 0, 0, 1, 0}, "voltage", "10V"},
+    Kind{Quantity::inverse_velocity, {-1, 0, 1, 0, 0, 0, 0}, "inverse velocity", "0.05s/mm"},
+    Kind{
+        Quantity::inverse_square_of_velocity, {-2, 0, 2, 0, 0, 0, 0}, "inverse square of a velocity", "0.0001s^2/mm^2"},
+    Kind{Quantity::inverse_length, {-1, 0, 0, 0, 0, 0, 0}, "inverse length", "100/mm"},
+    Kind{Quantity::inverse_time, {0, 0, -1, 0, 0, 0, 0}, "inverse time", "0.001 1/s"},
+    Kind{Quantity::inverse_temperature, {0, 0, 0, 0, -1, 0, 0}, "inverse temperature", "0.002 1/K"},
+    Kind{Quantity::pressure, {-1, 1, -2, 0, 0, 0, 0}, "stress", "5MPa"},
 };
 
+const Kind& kind_of(Quantity quantity) {
+  return *std::ranges::find(kinds, quantity, &Kind::quantity);
+}
+
 double prefix_factor(char prefix) {
-  switch (prefix) {
-    case 'n':
-      return 1e-9;
-    case 'u':
-      return 1e-6;
-    case 'm':
-      return 1e-3;
-    case 'c':
-      return 1e-2;
-    case 'd':
-      return 1e-1;
-    case 'k':
-      return 1e3;
-    case 'M':
-      return 1e6;
-    default:
-      return 1e9;  // 'G'
-  }
+  static constexpr std::array<std::pair<char, double>, 8> prefixes = {
+      {{'n', 1e-9}, {'u', 1e-6}, {'m', 1e-3}, {'c', 1e-2}, {'d', 1e-1}, {'k', 1e3}, {'M', 1e6}, {'G', 1e9}}};
+  return std::ranges::find(prefixes, prefix, &std::pair<char, double>::first)->second;
 }
 
 struct Term {
@@ -335,58 +327,11 @@ std::string frequency_text(double hertz, int digits) {
 }
 
 std::string_view to_string(Quantity quantity) {
-  for (const Kind& kind : kinds) {
-    if (kind.quantity == quantity) return kind.name;
-  }
-  return "quantity";
+  return kind_of(quantity).name;
 }
 
 std::string_view example_of(Quantity quantity) {
-  switch (quantity) {
-    case Quantity::dimensionless:
-      return "0.3 or 30 %";
-    case Quantity::time:
-      return "0.5s or 20ms";
-    case Quantity::length:
-      return "15mm or 0.015m";
-    case Quantity::velocity:
-      return "6.3mm/s";
-    case Quantity::angular_velocity:
-      return "4rpm or 0.419rad/s";
-    case Quantity::acceleration:
-      return "0.5m/s^2";
-    case Quantity::force:
-      return "50N";
-    case Quantity::torque:
-      return "2.5Nm";
-    case Quantity::mass:
-      return "0.1kg";
-    case Quantity::stiffness:
-      return "12N/mm";
-    case Quantity::damping:
-      return "3Ns/m";
-    case Quantity::frequency:
-      return "20kHz";
-    case Quantity::angle:
-      return "90deg or 1.57rad";
-    case Quantity::temperature:
-      return "23degC";
-    case Quantity::voltage:
-      return "10V";
-    case Quantity::inverse_velocity:
-      return "0.05s/mm";
-    case Quantity::inverse_square_of_velocity:
-      return "0.0001s^2/mm^2";
-    case Quantity::inverse_length:
-      return "100/mm";
-    case Quantity::inverse_time:
-      return "0.001 1/s";
-    case Quantity::inverse_temperature:
-      return "0.002 1/K";
-    case Quantity::pressure:
-      return "5MPa";
-  }
-  return "a number with a unit";
+  return kind_of(quantity).example;
 }
 
 }  // namespace tribofit

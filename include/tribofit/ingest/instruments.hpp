@@ -46,6 +46,9 @@ struct Instruments {
   } rig;
 };
 
+/// force_sensor.crosstalk of the file.
+inline constexpr const char* kCrosstalkKey = "crosstalk";
+
 /// Reads an instruments file (JSON; values as "0.5 Hz", ["0.5 Hz", "0.05 Hz"], or
 /// {"value": "0.5 Hz", "uncertainty": "0.05 Hz"}). Throws InputError naming the key for unknown keys (nearest known
 /// one offered), wrong units, values that cannot be.

@@ -28,7 +28,7 @@ using ClockOffsetFinder =
 
 /// How to read a trace; what is not stated is taken from the file.
 struct ReadOptions {
-  /// Channel (as in kChannelNames) -> column as the file names it, optionally with ":UNIT" ("Velocity:mm/s"). Columns
+  /// Channel (as in channel_names()) -> column as the file names it, optionally with ":UNIT" ("Velocity:mm/s"). Columns
   /// are also named by number ("#3").
   std::map<std::string, std::string> columns;
   /// Channel -> unit, or channel -> sensitivity of a voltage ("v_b" -> "5 mm/s/V").

@@ -1,81 +1,51 @@
 #include "clock_time.hpp"
 
-#include <charconv>
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <string>
+
+#include "dialect.hpp"
 
 namespace tribofit {
 namespace {
 
-/// Reads numbers and the signs between them from the left.
-class Scanner {
- public:
-  explicit Scanner(std::string_view text) : text_(text) {}
-  bool is_at_end() const { return text_.empty(); }
-  bool skip(char sign) {
-    if (text_.empty() || text_.front() != sign) return false;
-    text_.remove_prefix(1);
-    return true;
-  }
-  /// A whole number of at most so many digits.
-  std::optional<int> whole(std::size_t digits) {
-    int value = 0;
-    const auto [end, error] = std::from_chars(text_.data(), text_.data() + std::min(digits, text_.size()), value);
-    if (error != std::errc{} || value < 0 || *text_.data() == '-') return std::nullopt;
-    text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
-    return value;
-  }
-  /// The digits behind a decimal point or comma, as a part of one; 0 where there is none.
-  std::optional<double> fraction() {
-    if (!skip('.') && !skip(',')) return 0.0;
-    const std::size_t digits = std::min(text_.find_first_not_of("0123456789"), text_.size());
-    double value = 0;
-    const std::string decimal = "0." + std::string(text_.substr(0, digits));
-    std::from_chars(decimal.data(), decimal.data() + decimal.size(), value);
-    text_.remove_prefix(digits);
-    return digits > 0 ? std::optional(value) : std::nullopt;
-  }
-
- private:
-  std::string_view text_;
-};
-
-/// Seconds of the days before a date, from 2020 on; behind it a blank or a T.
-std::optional<double> seconds_of_date(Scanner& scanner, bool year_is_first) {
-  const char sign = year_is_first ? '-' : '.';
-  const auto first = scanner.whole(year_is_first ? 4 : 2);
-  if (!first || !scanner.skip(sign)) return std::nullopt;
-  const auto month = scanner.whole(2);
-  if (!month || !scanner.skip(sign)) return std::nullopt;
-  const auto last = scanner.whole(year_is_first ? 2 : 4);
-  if (!last || !(scanner.skip(' ') || scanner.skip('T'))) return std::nullopt;
-  const std::chrono::year_month_day date(std::chrono::year(year_is_first ? *first : *last),
-                                         std::chrono::month(static_cast<unsigned>(*month)),
-                                         std::chrono::day(static_cast<unsigned>(year_is_first ? *last : *first)));
+/// Seconds of the days before a date, from 2020 on; nothing where there is no such day.
+std::optional<double> seconds_of_date(int year, int month, int day) {
+  const std::chrono::year_month_day date(std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day)));
   if (!date.ok()) return std::nullopt;
   using namespace std::chrono_literals;
-  const auto days = std::chrono::sys_days(date) - std::chrono::sys_days(2020y / 1 / 1);
-  return std::chrono::duration<double>(days).count();
+  return std::chrono::duration<double>(std::chrono::sys_days(date) - std::chrono::sys_days(2020y / 1 / 1)).count();
 }
 
 }  // namespace
 
 std::optional<double> clock_time(std::string_view cell) {
   if (cell.find(':') == std::string_view::npos) return std::nullopt;
-  const bool year_is_first = cell.find('-') < cell.find(':');
-  const bool has_date = cell.find_first_of(" T") < cell.find(':');
-  Scanner scanner(cell);
-  const std::optional<double> date = has_date ? seconds_of_date(scanner, year_is_first) : 0.0;
-  if (!date) return std::nullopt;
-  const auto hours = scanner.whole(2);
-  if (!hours || !scanner.skip(':')) return std::nullopt;
-  const auto minutes = scanner.whole(2);
-  if (!minutes || !scanner.skip(':')) return std::nullopt;
-  const auto seconds = scanner.whole(2);
-  const auto part = scanner.fraction();
-  if (!seconds || !part || !scanner.is_at_end()) return std::nullopt;
-  if (*hours > 23 || *minutes > 59 || *seconds > 60) return std::nullopt;
-  return *date + 3600 * *hours + 60 * *minutes + *seconds + *part;
+  const std::string text(cell);
+  char a[5] = "", b[3] = "", c[5] = "";
+  int end = 0;
+  double date = 0;
+  const char* digits = text.c_str();
+  const bool year_first = std::sscanf(digits, "%4[0-9]-%2[0-9]-%2[0-9]%*1[ T]%n", a, b, c, &end) == 3 && end > 0;
+  const bool day_first =
+      !year_first && std::sscanf(digits, "%2[0-9].%2[0-9].%4[0-9]%*1[ T]%n", a, b, c, &end) == 3 && end > 0;
+  if (year_first || day_first) {
+    const int first = std::atoi(a), last = std::atoi(c);
+    const auto seconds = seconds_of_date(year_first ? first : last, std::atoi(b), year_first ? last : first);
+    if (!seconds) return std::nullopt;
+    date = *seconds;
+    digits += end;
+  }
+  char hour[3] = "", minute[3] = "", second[3] = "", fraction[32] = "";
+  end = 0;
+  const int parts =
+      std::sscanf(digits, "%2[0-9]:%2[0-9]:%2[0-9]%n%*1[.,]%30[0-9]%n", hour, minute, second, &end, fraction, &end);
+  if (parts < 3 || digits[end] != '\0') return std::nullopt;
+  const int hours = std::atoi(hour), minutes = std::atoi(minute), seconds = std::atoi(second);
+  if (hours > 23 || minutes > 59 || seconds > 60) return std::nullopt;
+  return date + 3600 * hours + 60 * minutes + seconds + *number_in("0." + std::string(fraction), '.');
 }
 
 }  // namespace tribofit

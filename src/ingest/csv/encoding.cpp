@@ -56,30 +56,17 @@ bool high_bytes_are_pairs(std::string_view text) {
   return true;
 }
 
-std::string from_latin1(std::string_view text) {
-  std::string result;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const unsigned char c = byte_at(text, i);
-    if (c < 0x80) {
-      result += text[i];
-    } else {
-      result += static_cast<char>(0xC0 | (c >> 6));
-      result += static_cast<char>(0x80 | (c & 0x3F));
-    }
-  }
-  return result;
-}
-
-std::string from_gbk(std::string_view text) {
-  const iconv_t converter = iconv_open("UTF-8", "GBK");
-  if (converter == reinterpret_cast<iconv_t>(-1)) return from_latin1(text);
+/// The text from an encoding that iconv knows; '?' for every byte that is invalid in it.
+std::string converted(std::string_view text, const char* from) {
+  const iconv_t converter = iconv_open("UTF-8", from);
   std::string source(text), result(2 * text.size() + 4, '\0');
+  if (converter == reinterpret_cast<iconv_t>(-1)) return valid_utf8(text);
   char* in = source.data();
   char* out = result.data();
   std::size_t in_left = source.size(), out_left = result.size();
   while (in_left > 0 && iconv(converter, &in, &in_left, &out, &out_left) == static_cast<std::size_t>(-1)) {
     if (in_left == 0 || out_left == 0) break;
-    ++in;  // an invalid byte
+    ++in;
     --in_left;
     *out++ = '?';
     --out_left;
@@ -145,14 +132,8 @@ Encoding guess_encoding(std::string_view head) {
 }
 
 std::string to_utf8(std::string_view text, Encoding encoding) {
-  switch (encoding) {
-    case Encoding::latin1:
-      return from_latin1(text);
-    case Encoding::gbk:
-      return from_gbk(text);
-    case Encoding::utf8:
-      break;
-  }
+  if (encoding == Encoding::latin1) return converted(text, "ISO-8859-1");
+  if (encoding == Encoding::gbk) return converted(text, "GBK");
   return std::string(text);
 }
 

@@ -18,63 +18,33 @@
 namespace tribofit {
 namespace tdms {
 
+namespace {
+
+/// Types of numbers, by their numbers in the file; nullptr: another type.
+const NumberType* find_type(std::uint32_t type) {
+  static const std::map<std::uint32_t, NumberType> types = {
+      {1, number_type<std::int8_t>},   {2, number_type<std::int16_t>},       {3, number_type<std::int32_t>},
+      {4, number_type<std::int64_t>},  {5, number_type<std::uint8_t>},       {6, number_type<std::uint16_t>},
+      {7, number_type<std::uint32_t>}, {8, number_type<std::uint64_t>},      {9, number_type<float>},
+      {10, number_type<double>},       {boolean, number_type<std::uint8_t>}, {0x19, number_type<float>},
+      {0x1A, number_type<double>}};
+  const auto found = types.find(type);
+  return found == types.end() ? nullptr : &found->second;
+}
+
+}  // namespace
+
 std::size_t bytes_of(std::uint32_t type) {
-  switch (type) {
-    case 1:
-    case 5:
-    case boolean:
-      return 1;
-    case 2:
-    case 6:
-      return 2;
-    case 3:
-    case 7:
-    case 9:
-    case 0x19:
-      return 4;
-    case 4:
-    case 8:
-    case 10:
-    case 0x1A:
-      return 8;
-    case timestamp:
-      return 16;
-    default:
-      return 0;
-  }
+  const NumberType* known = find_type(type);
+  return known != nullptr ? known->bytes : type == timestamp ? 16 : 0;
 }
 
 double value_at(std::string_view bytes, std::size_t at, std::uint32_t type, bool big_endian, double epoch) {
-  switch (type) {
-    case 1:
-      return number_at<std::int8_t>(bytes, at, big_endian);
-    case 2:
-      return number_at<std::int16_t>(bytes, at, big_endian);
-    case 3:
-      return number_at<std::int32_t>(bytes, at, big_endian);
-    case 4:
-      return static_cast<double>(number_at<std::int64_t>(bytes, at, big_endian));
-    case 5:
-    case boolean:
-      return number_at<std::uint8_t>(bytes, at, big_endian);
-    case 6:
-      return number_at<std::uint16_t>(bytes, at, big_endian);
-    case 7:
-      return number_at<std::uint32_t>(bytes, at, big_endian);
-    case 8:
-      return static_cast<double>(number_at<std::uint64_t>(bytes, at, big_endian));
-    case 9:
-    case 0x19:
-      return number_at<float>(bytes, at, big_endian);
-    case timestamp: {
-      // Fractions of 2^-64 s and seconds since 1904; the seconds come first where the highest byte does.
-      const auto seconds = number_at<std::int64_t>(bytes, at + (big_endian ? 0 : 8), big_endian);
-      const auto fractions = number_at<std::uint64_t>(bytes, at + (big_endian ? 8 : 0), big_endian);
-      return (static_cast<double>(seconds) - epoch) + std::ldexp(static_cast<double>(fractions), -64);
-    }
-    default:
-      return number_at<double>(bytes, at, big_endian);
-  }
+  if (type != timestamp) return find_type(type)->at(bytes, at, big_endian);
+  // Fractions of 2^-64 s and seconds since 1904; the seconds come first where the highest byte does.
+  const auto seconds = number_at<std::int64_t>(bytes, at + (big_endian ? 0 : 8), big_endian);
+  const auto fractions = number_at<std::uint64_t>(bytes, at + (big_endian ? 8 : 0), big_endian);
+  return (static_cast<double>(seconds) - epoch) + std::ldexp(static_cast<double>(fractions), -64);
 }
 
 }  // namespace tdms
