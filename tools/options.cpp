@@ -3,7 +3,7 @@
 
 #include "settings.hpp"
 #include "tribofit/fit/rate_state.hpp"
-#include "tribofit/ingest/file_names.hpp"
+#include "tribofit/ingest/channels.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/record_kind.hpp"
@@ -16,7 +16,7 @@ namespace {
 
 /// "time=t,mu=COF": a comma separates only where a channel and "=" follow, so that columns may hold commas themselves.
 void add_pairs(const std::string& text, const std::string& option, std::map<std::string, std::string>& pairs) {
-  static const std::vector<std::string> channels(kChannelNames.begin(), kChannelNames.end());
+  static const std::vector<std::string> channels = channel_names();
   const bool is_unit = option.ends_with("units");  // of a channel, or of a column by its name in the file
   std::vector<std::string> items;
   for (const std::string& part : split(text, ',')) {
