@@ -168,7 +168,7 @@ BatchOutcome fit_runs(const Campaign& campaign, const BatchOptions& batch) {
   Watch watch;
   BatchHooks hooks;
   hooks.keep = [&](const RunRecord& record, const Identification* result) {
-    write_whole(result_path(batch.results, record.name), run_json(record, result, {batch.arguments}));
+    write_run(batch.results, record, result, {batch.arguments});
   };
   hooks.progress = [&](const BatchProgress& progress) { watch.show(progress); };
   return run_batch(campaign, batch, hooks);
@@ -249,6 +249,7 @@ ExitStatus run_as_batch(const Settings& s, Campaign campaign, const IdentifyOpti
   try {
     claim_results(campaign, batch);
     remove_abandoned_files(batch.results);
+    remove_abandoned_files((fs::path(batch.results) / kept_folder).string());
     const bool is_planned = !s.shard.empty() && !batch.again && follow_plan(batch, campaign);
     if (!is_planned) write_campaign(campaign, batch);
     outcome = fit_runs(campaign, batch);

@@ -1,8 +1,7 @@
 #include <filesystem>
-#include <string>
 #include <system_error>
 
-#include "output/json.hpp"
+#include "described_results.hpp"
 #include "tribofit/campaign/batch.hpp"
 #include "tribofit/version.hpp"
 
@@ -11,13 +10,12 @@ namespace tribofit {
 std::string campaign_json(const Campaign& campaign, const BatchOptions& options) {
   const std::string hash = options_hash(options);
   std::error_code ignored;
-  const Json folder =
-      campaign.folder.empty() ? Json() : Json(std::filesystem::weakly_canonical(campaign.folder, ignored).string());
-  const auto run_json = [&](const Run& run) {
-    return object("name", run.name, "file", run.file, "settings", settings_hash(run, hash));
-  };
-  return sealed(text_of(object("tool", object("name", "tribofit", "version", version), "folder", folder, "runs",
-                               list_of(campaign.runs, run_json), "problems", campaign.problems)));
+  CampaignPlan plan{"", {}, campaign.problems};
+  if (!campaign.folder.empty()) plan.folder = std::filesystem::weakly_canonical(campaign.folder, ignored).string();
+  for (const Run& run : campaign.runs) plan.runs.push_back({run.name, run.file, settings_hash(run, hash)});
+  Json json = object("tool", object("name", "tribofit", "version", version));
+  json.update(json_of(plan));
+  return sealed(text_of(json));
 }
 
 }  // namespace tribofit

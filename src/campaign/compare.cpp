@@ -7,6 +7,8 @@
 #include <limits>
 #include <set>
 
+#include "tribofit/output/digits.hpp"
+
 namespace tribofit {
 namespace {
 
@@ -44,7 +46,7 @@ ComparedValue compared(const EarlierValue& earlier, const PooledValue& ours) {
 
 const PooledValue* find(std::span<const PooledValue> values, const EarlierValue& earlier) {
   const auto found = std::find_if(values.begin(), values.end(), [&](const PooledValue& v) {
-    return full_name(v) == earlier.name && v.unit == earlier.unit && std::isfinite(v.value);
+    return full_name(v.name, v.effect) == earlier.name && v.unit == earlier.unit && std::isfinite(v.value);
   });
   return found == values.end() ? nullptr : &*found;
 }
@@ -80,7 +82,7 @@ std::string conditions_text(const Conditions& conditions, const std::vector<Othe
   const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
   for (const ConditionInfo& info : condition_infos) {
     const Condition& condition = conditions.*info.member;
-    if (condition.known()) add(fmt::format("{:.4g} {}", condition.value / info.si, info.unit));
+    if (condition.known()) add(fmt::format("{} {}", general(condition.value / info.si, 4), info.unit));
   }
   for (const OtherCondition& other : others) {
     if (!other.value.empty()) add(other.name + " " + other.value);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,6 +26,23 @@ inline Json condition_values(const Conditions& conditions) {
     values[info.column] = number((conditions.*info.member).value / info.si);
   }
   return values;
+}
+
+/// The same with "radius_source", ..., null where nothing said it.
+inline Json json_of(const Conditions& conditions) {
+  Json json = condition_values(conditions);
+  for (const ConditionInfo& info : condition_infos) {
+    json[source_key(info)] = text_or_null((conditions.*info.member).source);
+  }
+  return json;
+}
+inline void read_json(const Json& json, Conditions& conditions) {
+  for (const ConditionInfo& info : condition_infos) {
+    Condition& one = conditions.*info.member;
+    const auto value = json.find(info.column), source = json.find(source_key(info));
+    one.value = value != json.end() && value->is_number() ? value->get<double>() * info.si : std::nan("");
+    one.source = source != json.end() && source->is_string() ? source->get<std::string>() : "";
+  }
 }
 
 /// The columns of conditions in tables of a campaign: radius_mm, speed_rpm, load_N and those that any run states.
@@ -62,10 +80,5 @@ class ConditionCells {
 
   std::vector<std::string> names_;
 };
-
-/// A list of names and values.
-inline Json others_json(const std::vector<OtherCondition>& others) {
-  return list_of(others, [](const OtherCondition& o) { return object("name", o.name, "value", o.value); });
-}
 
 }  // namespace tribofit

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "order.hpp"
+#include "tribofit/output/digits.hpp"
 
 namespace tribofit {
 namespace {
@@ -15,7 +16,7 @@ ConditionColumn column_of(std::span<const RunResult> runs, const ConditionInfo& 
     const Condition& said = run.run.conditions.*which.member;
     const Condition& used = said.known() ? said : run.conditions.*which.member;
     out.number.push_back(used.known() ? std::optional(used.value / which.si) : std::nullopt);
-    out.text.push_back(used.known() ? fmt::format("{:.6g} {}", used.value / which.si, which.unit) : "");
+    out.text.push_back(used.known() ? fmt::format("{} {}", general(used.value / which.si), which.unit) : "");
   }
   return out;
 }

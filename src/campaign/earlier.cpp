@@ -165,10 +165,6 @@ class EarlierReader {
 
 }  // namespace
 
-std::string full_name(const PooledValue& value) {
-  return value.effect.empty() ? value.name : value.effect + "." + value.name;
-}
-
 EarlierTable read_earlier(const std::string& path, std::span<const PooledGroup> groups) {
   return EarlierReader(path, groups).read();
 }

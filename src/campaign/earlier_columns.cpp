@@ -52,7 +52,7 @@ bool has(const std::vector<std::string>& list, std::string_view text) {
 
 EarlierColumns::EarlierColumns(std::string path, std::span<const PooledGroup> groups) : path_(std::move(path)) {
   const auto add = [&](const PooledValue& value) {
-    if (!find(full_name(value))) known_.push_back({full_name(value), value.unit});
+    if (!find(full_name(value.name, value.effect))) known_.push_back({full_name(value.name, value.effect), value.unit});
   };
   for (const PooledGroup& group : groups) {
     for (const auto& fit : group.fits) {

@@ -18,6 +18,7 @@
 #include "tribofit/ingest/output_tables.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
+#include "tribofit/output/digits.hpp"
 
 namespace tribofit {
 namespace {
@@ -28,9 +29,7 @@ namespace fs = std::filesystem;
 enum class Named { no, text, binary };
 
 Named named_as(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_case(path.extension().string());
   // The manifest of a folder of runs holds their conditions, not a run.
   if (path.filename() == manifest_name || path.filename().string().front() == '.') return Named::no;
   if (extension == ".csv" || extension == ".tsv") return Named::text;
@@ -48,8 +47,9 @@ void merge(const ConditionInfo& info, const Conditions& in_manifest, Conditions&
     return;
   }
   if (std::abs(merged.value - manifest.value) <= kSameStatement * std::abs(manifest.value)) return;
-  warnings.push_back(fmt::format("--{} {:.4g} {} is used, not the {:.4g} {} of {}", info.name, merged.value / info.si,
-                                 info.unit, manifest.value / info.si, info.unit, place));
+  warnings.push_back(fmt::format("--{} {} {} is used, not the {} {} of {}", info.name,
+                                 general(merged.value / info.si, 4), info.unit, general(manifest.value / info.si, 4),
+                                 info.unit, place));
 }
 
 /// What is stated of a run in `place`, under what the user says (`read`).

@@ -7,21 +7,16 @@
 
 namespace tribofit {
 
-ResultMeasure mean_over_runs(std::span<const double> values) {
-  const Estimate mean = mean_of_independent(values);
-  return {mean.value, mean.std_error};
-}
-
 const PooledValue* pooled_value(const std::vector<PooledValue>& values, std::string_view name) {
   const auto found = std::find_if(values.begin(), values.end(),
                                   [&](const PooledValue& v) { return v.name == name && v.effect.empty(); });
   return found == values.end() ? nullptr : &*found;
 }
 
-std::optional<ResultMeasure> pooled_mean(const std::vector<PooledValue>& values, std::string_view name) {
+std::optional<Estimate> pooled_mean(const std::vector<PooledValue>& values, std::string_view name) {
   const PooledValue* value = pooled_value(values, name);
   if (value == nullptr) return std::nullopt;
-  return ResultMeasure{value->mean, value->standard_error_of_mean};
+  return Estimate{value->mean, value->standard_error_of_mean};
 }
 
 const PooledGroup::OfFit* fit_of(const PooledGroup& group, std::string_view law, std::string_view protocol) {
@@ -30,7 +25,7 @@ const PooledGroup::OfFit* fit_of(const PooledGroup& group, std::string_view law,
   return found == group.fits.end() ? nullptr : &*found;
 }
 
-ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group, const PooledGroup::OfFit& pooled) {
+Estimate drop_of(std::span<const RunResult> runs, const PooledGroup& group, const PooledGroup::OfFit& pooled) {
   std::vector<double> drops;
   const auto level = [](const ResultFit& fit, std::string_view name) -> const ResultParameter* {
     const auto found = std::find_if(fit.parameters.begin(), fit.parameters.end(),
@@ -43,18 +38,18 @@ ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group,
     const ResultParameter *mu_s = level(*fit, static_level_name), *mu_k = level(*fit, kinetic_level_name);
     if (mu_s != nullptr && mu_k != nullptr) drops.push_back(mu_s->value - mu_k->value);
   }
-  return mean_over_runs(drops);
+  return mean_of_independent(drops);
 }
 
-std::optional<ResultMeasure> fundamental_of(const ResultReader& results, std::span<const RunResult> runs,
-                                            const PooledGroup& group) {
+std::optional<Estimate> fundamental_of(const ResultReader& results, std::span<const RunResult> runs,
+                                       const PooledGroup& group) {
   std::vector<double> values;
   for (const std::size_t k : group.runs) {
     const auto figures = results.figures(runs[k].position);
     if (figures && !figures->harmonics.empty()) values.push_back(figures->harmonics.front().amplitude);
   }
   if (values.empty()) return std::nullopt;
-  return mean_over_runs(values);
+  return mean_of_independent(values);
 }
 
 std::optional<FiguresOfRun> first_figures(const ResultReader& results, std::span<const RunResult> runs,

@@ -11,7 +11,7 @@ namespace tribofit {
 namespace {
 
 /// Form of the result files; a new one makes old results be done again.
-constexpr int kForm = 3;  // 1, 2: the checksum of a trace was another one
+constexpr int kForm = 4;  // 1, 2: the checksum of a trace was another one; 3: samples were kept in the result
 
 /// Texts with their lengths, so that no two lists of texts become the same one.
 class Text {

@@ -14,6 +14,8 @@
 #include "statistics/linear_algebra.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
+#include "tribofit/output/digits.hpp"
+#include "tribofit/output/text.hpp"
 
 namespace tribofit {
 namespace {
@@ -21,10 +23,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-std::string name_of(const ResultParameter& parameter) {
-  return parameter.effect.empty() ? parameter.name : parameter.effect + "." + parameter.name;
-}
 
 [[noreturn]] void refuse(const std::string& what, const std::string& name, const std::vector<std::string>& known) {
   const std::string near = likely_name(name, known);
@@ -65,7 +63,7 @@ Member member_of(std::size_t run, const ResultFit& fit) {
   for (Index i = 0; i < n; ++i) {
     for (Index j = 0; j < n; ++j) {
       const bool both = out.usable[static_cast<std::size_t>(i)] && out.usable[static_cast<std::size_t>(j)];
-      if (both) out.covariance(i, j) = fit.covariance[static_cast<std::size_t>(i * n + j)];
+      if (both) out.covariance(i, j) = fit.covariance[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
     }
     if (!(out.covariance(i, i) > 0)) out.covariance(i, i) = 1;  // not used
   }
@@ -198,25 +196,10 @@ void note_scatter(const SharedFit::Parameter& common, std::vector<std::string>& 
     if (!(value.between > kManyErrors * own)) continue;
     const std::string where = common.condition.empty() ? "" : " at " + common.condition + " " + common.levels[l];
     notes.push_back(
-        fmt::format("{}{} differs from run to run by {:.2g}{}, many times what the errors of the runs allow, so "
+        fmt::format("{}{} differs from run to run by {}{}, many times what the errors of the runs allow, so "
                     "it is hardly common to them; --vary {}:CONDITION gives one value for each value of a condition",
-                    common.name, where, value.between, value.unit == "1" ? "" : " " + value.unit, common.name));
+                    common.name, where, general(value.between, 2), unit_behind(value.unit), common.name));
   }
-}
-
-/// One joint fit of each law, to know its parameters.
-std::vector<const ResultFit*> fitted_laws(std::span<const RunResult> runs) {
-  std::vector<const ResultFit*> laws;
-  for (const RunResult& run : runs) {
-    for (const ResultFit& fit : run.fits) {
-      const auto same = [&](const ResultFit* other) { return other->law == fit.law; };
-      if (fit.protocol != to_string(Protocol::joint) || fit.covariance.empty() ||
-          std::any_of(laws.begin(), laws.end(), same))
-        continue;
-      laws.push_back(&fit);
-    }
-  }
-  return laws;
 }
 
 /// Refuses a parameter that no law has, or that is named twice.
@@ -224,7 +207,8 @@ void require_known(const Sharing& sharing, const std::vector<const ResultFit*>& 
   std::vector<std::string> known;
   for (const ResultFit* law : laws) {
     for (const ResultParameter& p : law->parameters) {
-      if (std::find(known.begin(), known.end(), name_of(p)) == known.end()) known.push_back(name_of(p));
+      if (std::find(known.begin(), known.end(), full_name(p.name, p.effect)) == known.end())
+        known.push_back(full_name(p.name, p.effect));
     }
   }
   for (std::size_t c = 0; c < sharing.common.size(); ++c) {
@@ -263,13 +247,13 @@ SharedFit fit_law(const ResultFit& like, std::span<const RunResult> runs, const 
   SharedFit fit;
   fit.law = like.law;
   for (const ResultParameter& p : like.parameters) {
-    fit.names.push_back(name_of(p));
+    fit.names.push_back(full_name(p.name, p.effect));
     fit.units.push_back(p.unit);
   }
   std::vector<Member> members;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const ResultFit* own = runs[r].fit(like.law, to_string(Protocol::joint));
-    if (own != nullptr && own->covariance.size() == fit.names.size() * fit.names.size()) {
+    if (own != nullptr && own->covariance.size() == fit.names.size()) {
       members.push_back(member_of(r, *own));
     } else if (runs[r].run.status == RunStatus::ok) {
       fit.notes.push_back(fmt::format("{} has no {} fit with errors and is not used", runs[r].run.name, like.law));
@@ -321,7 +305,7 @@ Sharing::Common vary_from(const std::string& text) {
 
 std::vector<SharedFit> fit_shared(std::span<const RunResult> runs, const Sharing& sharing,
                                   const ResultReader* results) {
-  const std::vector<const ResultFit*> laws = fitted_laws(runs);
+  const std::vector<const ResultFit*> laws = joint_fits(runs, true);
   if (laws.empty()) throw InputError("no run was fitted, so there is nothing to share", "see why in the summary");
   require_known(sharing, laws);
   const std::vector<std::vector<std::string>> texts = condition_texts(sharing, runs);

@@ -14,6 +14,7 @@
 #include "condition_columns.hpp"
 #include "statistics/meta_regression.hpp"
 #include "tribofit/ingest/units.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit {
@@ -124,7 +125,7 @@ std::optional<Trend> trend_of(std::span<const RunResult> runs, const ResultFit& 
   Trend out;
   out.law = like.law;
   const ResultParameter& p = like.parameters[parameter];
-  out.parameter = p.effect.empty() ? p.name : p.effect + "." + p.name;
+  out.parameter = full_name(p.name, p.effect);
   out.unit = p.unit;
   out.condition = column.name;
   out.condition_unit = column.unit;
@@ -154,8 +155,8 @@ void correct(std::vector<Trend>& trends) {
 
 std::string sentence(const Confounded& pair) {
   const bool order = pair.b == "order";
-  const std::string both = fmt::format("{} and {} change together (correlation {:.2f})", pair.a,
-                                       order ? "the order of the runs" : pair.b, pair.correlation);
+  const std::string both = fmt::format("{} and {} change together (correlation {})", pair.a,
+                                       order ? "the order of the runs" : pair.b, fixed(pair.correlation, 2));
   if (order)
     return both + ": wear or running-in may look like a trend over " + pair.a + "; make the runs in random order";
   if (pair.b == "sliding speed") {
@@ -169,17 +170,7 @@ std::string sentence(const Confounded& pair) {
 Trends find_trends(std::span<const RunResult> runs) {
   Trends out;
   const std::vector<ConditionColumn> columns = numbers_of(runs);
-  std::vector<const ResultFit*> laws;
-  for (const RunResult& run : runs) {
-    for (const ResultFit& fit : run.fits) {
-      const auto same = [&](const ResultFit* other) { return other->law == fit.law; };
-      if (fit.protocol == to_string(Protocol::joint) && !fit.parameters.empty() &&
-          std::none_of(laws.begin(), laws.end(), same)) {
-        laws.push_back(&fit);
-      }
-    }
-  }
-  for (const ResultFit* law : laws) {
+  for (const ResultFit* law : joint_fits(runs)) {
     for (std::size_t p = 0; p < law->parameters.size(); ++p) {
       for (const ConditionColumn& column : columns) {
         if (auto trend = trend_of(runs, *law, p, column)) out.trends.push_back(std::move(*trend));

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <set>
 
-#include "campaign/condensed_json.hpp"
+#include "campaign/described_results.hpp"
+#include "campaign/kept_samples.hpp"
 #include "campaign/condition_cells.hpp"
-#include "campaign/figures_json.hpp"
 #include "json_parts.hpp"
 #include "numbers.hpp"
 #include "tribofit/output/whole_file.hpp"
@@ -17,19 +17,14 @@
 namespace tribofit {
 namespace {
 
-Json repeat_json(const RunRecord& run) {
-  return run.repeat ? Json(*run.repeat) : Json(nullptr);
-}
-
 Json fit_json(const ResultFit& fit) {
   const auto parameter = [](const ResultParameter& p) {
     return object("name", p.name, "value", p.value, "std_error", p.std_error, "unit", p.unit, "effect",
                   text_or_null(p.effect), "systematic_error", positive_or_null(p.systematic), "at_bound", p.at_bound);
   };
   return object("law", fit.law, "protocol", fit.protocol, "effects", fit.effects, "parameters",
-                list_of(fit.parameters, parameter), "error",
-                error_json(fit.rmse, fit.mean_relative, fit.max_relative, fit.held_out_rmse), "floor_rmse",
-                fit.floor_rmse, "converged", fit.converged);
+                list_of(fit.parameters, parameter), "error", written(error_members, fit), "floor_rmse", fit.floor_rmse,
+                "converged", fit.converged);
 }
 
 /// The measures of stick-slip; summary.csv has columns of the same names.
@@ -43,10 +38,10 @@ Json measures_json(const RunResult& r) {
 Json result_json(const RunResult& result) {
   const RunRecord& run = result.run;
   return object("name", run.name, "file", run.file, "status", to_string(run.status), "message",
-                text_or_null(run.message), "conditions", conditions_json(result.known_conditions()), "repeat",
-                repeat_json(run), "others", others_json(run.others), "friction_unit", result.friction_unit,
-                "stick_slip", result.was_read() ? measures_json(result) : Json(nullptr), "fits",
-                list_of(result.fits, fit_json), "best", result.fits.empty() ? Json(nullptr) : Json(result.best));
+                text_or_null(run.message), "conditions", json_of(result.known_conditions()), "repeat",
+                json_of(run.repeat), "others", json_of(run.others), "friction_unit", result.friction_unit, "stick_slip",
+                result.was_read() ? measures_json(result) : Json(nullptr), "fits", list_of(result.fits, fit_json),
+                "best", result.fits.empty() ? Json(nullptr) : Json(result.best));
 }
 
 /// A row of summary.csv, values under the names of their columns: what every run has, further conditions, the analysis.
@@ -81,7 +76,7 @@ SummaryRow summary_row(const RunResult& result) {
   SummaryRow row = summary_row(run.name, run.file, to_string(run.status));
   auto& [fixed, conditions, analysis] = row;
   fixed.update(condition_values(result.known_conditions()));
-  add_members(fixed, "message", run.message, "repeat", repeat_json(run));
+  add_members(fixed, "message", run.message, "repeat", json_of(run.repeat));
   for (const OtherCondition& other : run.others) conditions[other.name] = other.value;
   if (!result.was_read()) return row;
   analysis = object("samples", result.samples, "duration_s", result.duration, "rate_hz", result.rate);
@@ -131,24 +126,18 @@ std::string error_line(const RunRecord& run) {
 
 }  // namespace
 
-std::string run_json(const RunRecord& run, const Identification* result, const JsonOptions& options) {
+void write_run(const std::string& results, const RunRecord& run, const Identification* result,
+               const JsonOptions& options) {
   Json json;
   if (result != nullptr) {
     json = identification_json(*result, options);
   } else {
-    json = object("tool", tool_json(options), "trace", object("path", run.file), "conditions",
-                  conditions_json(run.conditions), "fits", Json::array(), "best", nullptr, "analysed", false,
-                  "warnings", Json::array({run.message}));
+    json = object("tool", tool_json(options), "trace", object("path", run.file), "conditions", json_of(run.conditions),
+                  "fits", Json::array(), "best", nullptr, "analysed", false, "warnings", Json::array({run.message}));
   }
-  json["run"] = object("name", run.name, "file", run.file, "key", run.key, "settings", run.settings, "status",
-                       to_string(run.status), "message", text_or_null(run.message), "stated",
-                       conditions_json(run.conditions), "repeat", repeat_json(run), "others", others_json(run.others));
-  std::string text = text_of(json);
-  if (result != nullptr && result->analysed) {  // many numbers: on one line
-    text.insert(text.size() - 3, ",\n  \"figures\": " + figures_text(figures_of(*result)) +
-                                     ",\n  \"condensed\": " + condensed_text(condensed(*result)));
-  }
-  return sealed(text);
+  keep_samples(results, run, result);
+  json["run"] = json_of(run);
+  write_whole(result_path(results, run.name), sealed(text_of(json)));
 }
 
 CampaignSummary write_summary(const ResultReader& results, const std::string& comparison) {

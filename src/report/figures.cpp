@@ -14,7 +14,7 @@ struct GroupRow {
   const PooledGroup& group;
   const PooledGroup::OfFit* fit;
   const PooledValue *first, *second;  ///< the measure; or mu_s and mu_k
-  ResultMeasure drop;
+  Estimate drop;
 };
 
 void write_groups(WholeFolder& files, const ConditionCells& conditions, std::span<const RunResult> runs,

@@ -1,100 +1,106 @@
 #include "tribofit/report/json.hpp"
-#include "tribofit/kinematics/health.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
 #include <utility>
 
-#include "campaign/condition_cells.hpp"
+#include "campaign/described_results.hpp"
 #include "fit/assessment.hpp"
 #include "json_parts.hpp"
 #include "numbers.hpp"
 #include "rate_state.hpp"
 #include "segmentation/counts.hpp"
+#include "tribofit/kinematics/health.hpp"
 #include "tribofit/version.hpp"
 
 namespace tribofit {
+
+constexpr auto description(const Share*) {
+  return described("variable", &Share::variable, "share", &Share::share, "p_value", &Share::p_value);
+}
+
+constexpr auto description(const Rung*) {
+  using R = Rung;
+  return described("added", or_null(&R::added), "held_out_rmse", &R::held_out_rmse, "rmse", &R::rmse, "equivalent",
+                   &R::equivalent, "held_out_std_error", &R::held_out_std_error);
+}
+
+constexpr auto description(const Confirmation*) {
+  using C = Confirmation;
+  return described("path", &C::path, "base_rmse", &C::base_rmse, "final_rmse", &C::final_rmse, "p_value", &C::p_value,
+                   "floor_rmse", &C::floor_rmse);
+}
+
+constexpr auto description(const SlipSpread*) {
+  return described("mean", within(&SlipSpread::mean, &Estimate::value), "std_error",
+                   within(&SlipSpread::mean, &Estimate::std_error), "scatter", &SlipSpread::scatter);
+}
+
+constexpr auto description(const ForceStatistics*) {
+  using F = ForceStatistics;
+  return described("friction", &F::whole, "slips", &F::slips, "peak", &F::peak, "drop", &F::drop, "period_s",
+                   &F::period, "slip_time_s", &F::slip_time, "both_directions", &F::both_directions);
+}
+
+constexpr auto description(const FrictionLevels::Bin*) {
+  using B = FrictionLevels::Bin;
+  return described("velocity_mm_s", in(kMillimetre, &B::velocity), "friction", &B::friction, "slips", &B::slips);
+}
+
+constexpr auto description(const FrictionLevels::Level*) {
+  using L = FrictionLevels::Level;
+  return described("slowest_peak_mm_s", in(kMillimetre, &L::slowest_peak), "fastest_peak_mm_s",
+                   in(kMillimetre, &L::fastest_peak), "friction", &L::friction, "slips", &L::slips);
+}
+
+constexpr auto description(const FrictionLevels*) {
+  return described("bins", &FrictionLevels::bins, "levels", &FrictionLevels::levels);
+}
+
 namespace {
 
-// In the order of HealthItem::Status and MotionKind.
-
 /// In the units in which the parameters are shown; empty where it is not known.
-Json covariance_json(const Fit& fit) {
-  Json rows = Json::array();
+std::vector<std::vector<double>> shown_covariance(const Fit& fit) {
   const std::size_t n = fit.parameters.size();
+  std::vector<std::vector<double>> rows;
   if (fit.covariance.size() != n * n) return rows;
   for (std::size_t i = 0; i < n; ++i) {
-    Json row = Json::array();
+    rows.emplace_back();
     for (std::size_t j = 0; j < n; ++j) {
-      row.push_back(number(shown(fit.parameters[i], shown(fit.parameters[j], fit.covariance[i * n + j]))));
+      rows[i].push_back(shown(fit.parameters[i], shown(fit.parameters[j], fit.covariance[i * n + j])));
     }
-    rows.push_back(std::move(row));
   }
   return rows;
 }
 
-}  // namespace
-
-Json error_json(double rmse, double mean_relative, double max_relative, double held_out_rmse) {
-  return object("rmse", rmse, "mean_relative", mean_relative, "max_relative", max_relative, "held_out_rmse",
-                held_out_rmse);
-}
-
-namespace {
-
-Json fit_json(const Fit& fit, const Motion& motion) {
-  const auto parameter = [&](const FitParameter& p) { return parameter_json(p, motion); };
-  const auto correlation = [&](const Correlation& c) {
-    return object("parameters", Json{fit.parameters[c.first].parameter.name, fit.parameters[c.second].parameter.name},
-                  "value", c.value);
-  };
-  const Json floor = object("noise", fit.floor.noise, "scatter", fit.floor.scatter, "slow_noise", fit.floor.slow_noise,
-                            "source", fit.floor.source);
-  return object("law", to_string(fit.model.law()), "protocol", to_string(fit.protocol), "effects",
-                fit.model.effect_keys(), "effect_names", fit.model.effect_names(), "parameters",
-                list_of(fit.parameters, parameter), "error",
-                error_json(fit.error.rmse, fit.error.mean_relative, fit.error.max_relative, fit.error.held_out_rmse),
-                "floor_rmse", fit.floor.rmse, "converged", fit.converged, "conditional", is_conditional(fit),
-                "messages", fit.messages, "floor", floor, "explained", fit.explained, "stick_creep_rmse_mm_s",
-                fit.stick_rmse / kMillimetre, "fastest_mm_s", fit.fastest / kMillimetre, "samples", fit.observations,
-                "cycles", fit.cycles, "correlations", list_of(fit.correlations, correlation), "covariance",
-                covariance_json(fit), "degrees_of_freedom", fit.degrees_of_freedom);
-}
-
-Json spread_json(const SlipSpread& spread) {
-  return object("mean", spread.mean.value, "std_error", spread.mean.std_error, "scatter", spread.scatter);
-}
-
-Json estimate_json(const Estimate& estimate) {
-  const Interval ci = interval_of(estimate);
-  return object("value", estimate.value, "std_error", estimate.std_error, "ci95", interval_json(ci.lower, ci.upper));
-}
-
-Json force_json(const ForceStatistics& force) {
-  return object("friction", spread_json(force.whole), "slips", force.slips, "peak", spread_json(force.peak), "drop",
-                spread_json(force.drop), "period_s", spread_json(force.period), "slip_time_s",
-                spread_json(force.slip_time), "both_directions", force.both_directions);
-}
-
-Json friction_levels_json(const FrictionLevels& levels) {
-  return object("bins",
-                list_of(levels.bins,
-                        [](const FrictionLevels::Bin& bin) {
-                          return object("velocity_mm_s", bin.velocity / kMillimetre, "friction",
-                                        estimate_json(bin.friction), "slips", bin.slips);
-                        }),
-                "levels", list_of(levels.levels, [](const FrictionLevels::Level& level) {
-                  return object("slowest_peak_mm_s", level.slowest_peak / kMillimetre, "fastest_peak_mm_s",
-                                level.fastest_peak / kMillimetre, "friction", estimate_json(level.friction), "slips",
-                                level.slips);
-                }));
-}
-
-Json shares_json(const std::vector<Share>& shares) {
-  return list_of(shares, [](const Share& s) {
-    return object("variable", to_string(s.variable), "share", s.share, "p_value", s.p_value);
-  });
+ResultFit result_of(const Fit& fit, const Motion& motion) {
+  ResultFit out;
+  out.law = to_string(fit.model.law());
+  out.protocol = to_string(fit.protocol);
+  out.effects = fit.model.effect_keys();
+  out.effect_names = fit.model.effect_names();
+  add_parameters(fit.parameters, fit.correlations, motion, out);
+  out.covariance = shown_covariance(fit);
+  out.degrees_of_freedom = fit.degrees_of_freedom;
+  out.rmse = fit.error.rmse;
+  out.held_out_rmse = fit.error.held_out_rmse;
+  out.mean_relative = fit.error.mean_relative;
+  out.max_relative = fit.error.max_relative;
+  out.floor_rmse = fit.floor.rmse;
+  out.noise = fit.floor.noise;
+  out.scatter = fit.floor.scatter;
+  out.slow_noise = fit.floor.slow_noise;
+  out.floor_source = fit.floor.source;
+  out.explained = fit.explained;
+  out.stick_creep = fit.stick_rmse;
+  out.fastest = fit.fastest;
+  out.converged = fit.converged;
+  out.conditional = is_conditional(fit);
+  out.samples = fit.observations;
+  out.cycles = fit.cycles;
+  out.messages = fit.messages;
+  return out;
 }
 
 Json diagnosis_json(const Diagnosis& d, const Motion& motion) {
@@ -104,20 +110,12 @@ Json diagnosis_json(const Diagnosis& d, const Motion& motion) {
                   list_of(f.parameters, [&](const FitParameter& p) { return parameter_json(p, motion); }), "reason",
                   f.reason, "held_out_std_error", f.held_out_std_error);
   };
-  const auto rung = [](const Rung& r) {
-    return object("added", text_or_null(r.added), "held_out_rmse", r.held_out_rmse, "rmse", r.rmse, "equivalent",
-                  r.equivalent, "held_out_std_error", r.held_out_std_error);
-  };
-  const auto confirmation = [](const Confirmation& c) {
-    return object("path", c.path, "base_rmse", c.base_rmse, "final_rmse", c.final_rmse, "p_value", c.p_value,
-                  "floor_rmse", c.floor_rmse);
-  };
   return object("verdict", to_string(d.verdict), "law", to_string(d.law), "rival_laws",
                 list_of(d.rival_laws, [](const Law& law) { return to_string(law); }), "from_the_start",
-                d.from_the_start, "where", shares_json(d.where), "effects", list_of(d.effects, finding), "ladder",
-                list_of(d.ladder, rung), "floor_rmse", d.floor_rmse, "remaining", shares_json(d.remaining),
-                "next_experiment", d.next_experiment, "formula", text_or_null(d.formula), "confirmations",
-                list_of(d.confirmations, confirmation), "messages", d.messages);
+                d.from_the_start, "where", json_of(d.where), "effects", list_of(d.effects, finding), "ladder",
+                json_of(d.ladder), "floor_rmse", d.floor_rmse, "remaining", json_of(d.remaining), "next_experiment",
+                d.next_experiment, "formula", text_or_null(d.formula), "confirmations", json_of(d.confirmations),
+                "messages", d.messages);
 }
 
 Json health_json(const Motion& motion) {
@@ -131,16 +129,22 @@ Json health_json(const Motion& motion) {
 Json stick_slip_json(const Identification& result) {
   const Segmentation& s = result.segmentation;
   const SpectralPeak& peak = result.spectral_peak;
-  return object("cycles", count_of_cycles(s), "frequency_hz", estimate_json(s.frequency), "amplitude_mm_s",
-                s.amplitude.value / kMillimetre, "rms_velocity_mm_s", s.rms_velocity / kMillimetre, "stick_time_s",
-                s.stick_time.value, "amplitude_std_error_mm_s", s.amplitude.std_error / kMillimetre,
-                "stick_time_std_error_s", s.stick_time.std_error, "slip_time_s", s.slip_time.value,
-                "slip_time_std_error_s", s.slip_time.std_error, "slips", s.cycles.size(), "samples_in_slip",
-                samples_in_slip(s), "sticks_over_1_s", long_sticks(s).count, "longest_stick_s", long_sticks(s).longest,
-                "branch_difference", s.branch_difference.value, "branch_difference_std_error",
-                s.branch_difference.std_error, "motion", to_string(s.kind), "notes", s.notes, "spectrum",
-                object("peak_hz", peak.frequency, "amplitude_mm_s", peak.amplitude / kMillimetre, "plain_fft_bin_hz",
-                       peak.bin_frequency, "plain_fft_bin_width_hz", peak.bin_width));
+  const auto in_mm = [](const Estimate& e) { return Estimate{e.value / kMillimetre, e.std_error / kMillimetre}; };
+  RunResult measures;
+  measures.cycles = count_of_cycles(s);
+  measures.frequency = s.frequency;
+  measures.amplitude = in_mm(s.amplitude);
+  measures.stick_time = s.stick_time;
+  measures.slip_time = s.slip_time;
+  measures.rms_velocity = s.rms_velocity / kMillimetre;
+  Json json = written(stick_slip_members, measures);
+  add_members(json, "slips", s.cycles.size(), "samples_in_slip", samples_in_slip(s), "sticks_over_1_s",
+              long_sticks(s).count, "longest_stick_s", long_sticks(s).longest, "branch_difference",
+              s.branch_difference.value, "branch_difference_std_error", s.branch_difference.std_error, "motion",
+              to_string(s.kind), "notes", s.notes, "spectrum",
+              object("peak_hz", peak.frequency, "amplitude_mm_s", peak.amplitude / kMillimetre, "plain_fft_bin_hz",
+                     peak.bin_frequency, "plain_fft_bin_width_hz", peak.bin_width));
+  return json;
 }
 
 Json comparisons_json(std::span<const Fit> fits, std::size_t best) {
@@ -177,21 +181,22 @@ Json tool_json(const JsonOptions& options) {
   return object("name", "tribofit", "version", version, "arguments", options.arguments);
 }
 
-Json conditions_json(const Conditions& c) {
-  Json json = condition_values(c);
-  for (const ConditionInfo& info : condition_infos) json[source_key(info)] = text_or_null((c.*info.member).source);
+Json trace_json(const Identification& r) {
+  RunResult trace;
+  trace.path = r.path;
+  trace.samples = r.samples;
+  trace.duration = r.duration;
+  trace.rate = r.rate;
+  trace.checksum = fmt::format("{:016x}", r.checksum);
+  trace.friction_unit = friction_unit(r.motion);
+  Json json = written(trace_members, trace);
+  add_members(json, "trimmed_s", static_cast<double>(r.motion.trimmed) * r.motion.step, "notes", r.notes, "kind",
+              to_string(kind_of_record(r.motion, r.segmentation)), "kind_source", text_or_null(r.motion.kind_source));
   return json;
 }
 
-Json trace_json(const Identification& r) {
-  return object("path", r.path, "samples", r.samples, "duration_s", r.duration, "rate_hz", r.rate, "checksum",
-                fmt::format("{:016x}", r.checksum), "friction_unit", friction_unit(r.motion), "trimmed_s",
-                static_cast<double>(r.motion.trimmed) * r.motion.step, "notes", r.notes, "kind",
-                to_string(kind_of_record(r.motion, r.segmentation)), "kind_source", text_or_null(r.motion.kind_source));
-}
-
 Json conditions_of(const Motion& motion) {
-  Json json = conditions_json(motion.conditions);
+  Json json = json_of(motion.conditions);
   if (motion.kind == RecordKind::spring_slider) {
     json["spring"] = object("drive_mm_s", motion.spring.velocity.value / kMillimetre, "stiffness_N_per_mm",
                             motion.spring.stiffness.value * kMillimetre, "mass_kg", motion.spring.mass.value);
@@ -204,31 +209,54 @@ Json conditions_of(const Motion& motion) {
   if (motion.steps.size() < 2) return json;
   json["steps"] = list_of(motion.steps, [](const Step& step) {
     Json item = object("label", step.label, "begin", step.begin, "end", step.end);
-    item.update(conditions_json(step.conditions));
+    item.update(json_of(step.conditions));
     return item;
   });
   return json;
 }
 
-Json parameter_json(const FitParameter& p, const Motion& motion) {
+ResultParameter result_of(const FitParameter& p, const Motion& motion) {
   const auto in_unit = [&](double si) { return shown(p, si); };
-  return object("name", p.parameter.name, "value", in_unit(p.value), "std_error", in_unit(p.std_error), "ci95",
-                interval_json(in_unit(p.lower95), in_unit(p.upper95)), "unit", shown_unit(p, motion), "effect",
-                text_or_null(p.effect), "systematic_error", positive_or_null(in_unit(p.systematic)), "profile_ci95",
-                interval_json(in_unit(p.profile_lower95), in_unit(p.profile_upper95)), "start", in_unit(p.start),
-                "bounds", interval_json(p.parameter.lower, p.parameter.upper), "at_bound", p.at_bound, "determined",
-                p.determined);
+  ResultParameter out;
+  out.name = p.parameter.name;
+  out.unit = shown_unit(p, motion);
+  out.effect = p.effect;
+  out.value = in_unit(p.value);
+  out.std_error = in_unit(p.std_error);
+  out.systematic = in_unit(p.systematic);
+  out.lower95 = in_unit(p.lower95);
+  out.upper95 = in_unit(p.upper95);
+  out.profile_lower95 = in_unit(p.profile_lower95);
+  out.profile_upper95 = in_unit(p.profile_upper95);
+  out.start = in_unit(p.start);
+  out.lower = p.parameter.lower;
+  out.upper = p.parameter.upper;
+  out.at_bound = p.at_bound;
+  out.determined = p.determined;
+  return out;
+}
+
+void add_parameters(std::span<const FitParameter> parameters, std::span<const Correlation> correlations,
+                    const Motion& motion, ResultFit& out) {
+  for (const FitParameter& p : parameters) out.parameters.push_back(result_of(p, motion));
+  for (const Correlation& c : correlations) {
+    out.correlations.push_back({{parameters[c.first].parameter.name, parameters[c.second].parameter.name}, c.value});
+  }
+}
+
+Json parameter_json(const FitParameter& p, const Motion& motion) {
+  return json_of(result_of(p, motion));
 }
 
 Json fits_json(std::span<const Fit> fits, const Motion& motion) {
-  return list_of(fits, [&](const Fit& fit) { return fit_json(fit, motion); });
+  return list_of(fits, [&](const Fit& fit) { return json_of(result_of(fit, motion)); });
 }
 
 Json record_json(const Identification& trace, const JsonOptions& options) {
   Json json = object("tool", tool_json(options), "trace", trace_json(trace), "conditions", conditions_of(trace.motion),
                      "health", health_json(trace.motion), "stick_slip", stick_slip_json(trace));
-  if (trace.force_statistics) json["force"] = force_json(*trace.force_statistics);
-  if (trace.friction_levels) json["friction_over_velocity"] = friction_levels_json(*trace.friction_levels);
+  if (trace.force_statistics) json["force"] = json_of(*trace.force_statistics);
+  if (trace.friction_levels) json["friction_over_velocity"] = json_of(*trace.friction_levels);
   return json;
 }
 

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "output/json.hpp"
+#include "tribofit/campaign/run_result.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/report/json.hpp"
 #include "tribofit/report/report.hpp"
@@ -15,14 +16,14 @@ Json tool_json(const JsonOptions& options);
 /// "tool", "trace", "conditions", "health" and "stick_slip": how the object of one trace begins.
 Json record_json(const Identification& trace, const JsonOptions& options);
 Json trace_json(const Identification& trace);
-Json conditions_json(const Conditions& conditions);
 /// With those of the steps, where there are several.
 Json conditions_of(const Motion& motion);
 /// In the units people read, which depend on whether friction is a force (`motion`).
+ResultParameter result_of(const FitParameter& parameter, const Motion& motion);
+void add_parameters(std::span<const FitParameter> parameters, std::span<const Correlation> correlations,
+                    const Motion& motion, ResultFit& out);
 Json parameter_json(const FitParameter& parameter, const Motion& motion);
 Json fits_json(std::span<const Fit> fits, const Motion& motion);
-/// What a fit leaves; see ErrorFigures.
-Json error_json(double rmse, double mean_relative, double max_relative, double held_out_rmse);
 Json rig_json(const RigFit& rig);
 
 /// The whole result of one trace.

@@ -5,7 +5,7 @@
 #include <limits>
 #include <system_error>
 
-#include "campaign/condition_cells.hpp"
+#include "campaign/described_results.hpp"
 #include "json_parts.hpp"
 #include "numbers.hpp"
 #include "tribofit/campaign/earlier.hpp"
@@ -52,7 +52,7 @@ std::string pooled_csv(const Pooled& pooled) {
   for (const PooledGroup& group : pooled.groups) {
     const Json conditions = columns.of(group.conditions, group.others);
     const auto add = [&](const PooledValue& value, const std::string& law, const std::string& protocol) {
-      text += csv_line(conditions, law, protocol, full_name(value), numbers_json(value));
+      text += csv_line(conditions, law, protocol, full_name(value.name, value.effect), numbers_json(value));
     };
     for (const PooledGroup::OfFit& fit : group.fits) {
       for (const PooledValue& value : fit.parameters) add(value, fit.law, fit.protocol);
@@ -115,7 +115,7 @@ std::string pooled_json(const Pooled& pooled, std::span<const RunResult> runs) {
                   f.best_in);
   };
   const auto group = [&](const PooledGroup& g) {
-    return object("conditions", conditions_json(g.conditions), "others", others_json(g.others), "runs",
+    return object("conditions", json_of(g.conditions), "others", json_of(g.others), "runs",
                   list_of(g.runs, [&](std::size_t r) { return Json(runs[r].run.name); }), "fits", list_of(g.fits, fit),
                   "measures", list_of(g.measures, value_json));
   };

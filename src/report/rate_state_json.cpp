@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "campaign/described_results.hpp"
 #include "json_parts.hpp"
 #include "numbers.hpp"
 #include "rate_state.hpp"
@@ -16,18 +17,16 @@ Json estimate_of(const Estimate& e, double unit = 1) {
 }
 
 /// In the units in which the parameters are shown: of D and k the search has the covariance of the logarithm.
-Json covariance_of(const RateStateFit& fit) {
-  Json rows = Json::array();
+std::vector<std::vector<double>> covariance_of(const RateStateFit& fit) {
   const std::size_t n = fit.parameters.size();
+  std::vector<std::vector<double>> rows(n);
   const auto scale = [&](std::size_t k) {
     const FitParameter& p = fit.parameters[k];
     const bool logarithmic = p.parameter.unit != "1";
     return logarithmic ? shown(p, p.value) : 1.0;
   };
   for (std::size_t i = 0; i < n; ++i) {
-    Json row = Json::array();
-    for (std::size_t j = 0; j < n; ++j) row.push_back(number(scale(i) * scale(j) * fit.covariance[i * n + j]));
-    rows.push_back(std::move(row));
+    for (std::size_t j = 0; j < n; ++j) rows[i].push_back(scale(i) * scale(j) * fit.covariance[i * n + j]);
   }
   return rows;
 }
@@ -79,23 +78,24 @@ Json healing_json(const Healing& healing) {
 }  // namespace
 
 Json rate_state_fits_json(const RateStateAnalysis& analysis, const Motion& motion) {
-  const auto correlation = [](const RateStateFit& fit) {
-    return list_of(fit.correlations, [&](const Correlation& c) {
-      return object("parameters", Json{fit.parameters[c.first].parameter.name, fit.parameters[c.second].parameter.name},
-                    "value", c.value);
-    });
-  };
   return list_of(analysis.fits, [&](const RateStateFit& fit) {
-    const double floor = std::hypot(fit.noise_white, fit.noise_slow);
-    return object("law", law_name(fit.evolution), "protocol", "joint", "effects", Json::array(), "effect_names",
-                  Json::array(), "parameters",
-                  list_of(fit.parameters, [&](const FitParameter& p) { return parameter_json(p, motion); }), "error",
-                  error_json(fit.rmse, std::nan(""), std::nan(""), fit.held_out_rmse), "floor_rmse", floor, "converged",
-                  fit.converged, "conditional", false, "messages", fit.messages, "floor",
-                  object("noise", fit.noise_white, "scatter", 0, "slow_noise", fit.noise_slow, "source", "residuals"),
-                  "explained", nullptr, "stick_creep_rmse_mm_s", nullptr, "fastest_mm_s", nullptr, "samples",
-                  fit.samples, "cycles", 0, "correlations", correlation(fit), "covariance",
-                  fit.converged ? covariance_of(fit) : Json::array(), "degrees_of_freedom", fit.degrees_of_freedom);
+    ResultFit out;
+    out.law = law_name(fit.evolution);
+    out.protocol = "joint";
+    add_parameters(fit.parameters, fit.correlations, motion, out);
+    if (fit.converged) out.covariance = covariance_of(fit);
+    out.degrees_of_freedom = fit.degrees_of_freedom;
+    out.rmse = fit.rmse;
+    out.held_out_rmse = fit.held_out_rmse;
+    out.floor_rmse = std::hypot(fit.noise_white, fit.noise_slow);
+    out.noise = fit.noise_white;
+    out.slow_noise = fit.noise_slow;
+    out.floor_source = "residuals";
+    out.mean_relative = out.max_relative = out.explained = out.stick_creep = out.fastest = std::nan("");
+    out.converged = fit.converged;
+    out.samples = fit.samples;
+    out.messages = fit.messages;
+    return json_of(out);
   });
 }
 

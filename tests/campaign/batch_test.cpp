@@ -39,7 +39,8 @@ TEST_F(Batch, WritesAFileARunAndASummaryInTheOrderOfTheManifest) {
   EXPECT_THAT(outcome.out, HasSubstr("5 fitted, 0 already there, 0 failed; results in runs-results/"));
   EXPECT_THAT(outcome.err, IsEmpty());
   const auto files = files_in(shop_ / "runs-results");
-  EXPECT_EQ(files.size(), 18u);  // five runs, campaign.json, the summary twice, three of repeats, seven figures
+  EXPECT_EQ(files.size(), 28u);  // five runs with what they keep of their samples twice, campaign.json, the summary
+                                 // twice, three of repeats, seven figures
   const auto lines = lines_of(files.at("summary.csv"));
   ASSERT_EQ(lines.size(), 6u);
   EXPECT_EQ(lines[0].find("run,file,status,message,radius_mm,speed_rpm,load_N,repeat,lot,"), 0u);

@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "../recovery/twin.hpp"
-#include "campaign/figures_json.hpp"
+#include "campaign/kept_samples.hpp"
 
 namespace {
 
@@ -124,15 +124,15 @@ TEST(Figures, ThreeWholeCyclesInOrder) {
 
 TEST(Figures, ComeBackFromTheirText) {
   const RunFigures figures = figures_of(analysed_twin());
-  const std::string text = figures_text(figures);
+  const std::string text = line_of(json_of(figures));
   EXPECT_LT(text.size(), 14000u);
-  const RunFigures back = figures_from(nlohmann::ordered_json::parse(text));
+  const RunFigures back = read_from<RunFigures>(Json::parse(text));
   EXPECT_EQ(back.bin_samples, figures.bin_samples);
   ASSERT_EQ(back.errors.size(), 4u);
   EXPECT_NEAR(back.errors[2].fitted[7], figures.errors[2].fitted[7], 1e-6);
   EXPECT_NEAR(back.errors[3].max_relative, figures.errors[3].max_relative, 1e-6);
   EXPECT_EQ(back.harmonics.size(), figures.harmonics.size());
-  EXPECT_EQ(figures_text(back), text);
+  EXPECT_EQ(line_of(json_of(back)), text);
 }
 
 }  // namespace

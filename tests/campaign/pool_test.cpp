@@ -59,7 +59,8 @@ class Laboratory {
       fit.parameters.push_back(p);
     }
     for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) fit.covariance.push_back(stated * stated * covariance(i, j));
+      fit.covariance.emplace_back();
+      for (int j = 0; j < 3; ++j) fit.covariance.back().push_back(stated * stated * covariance(i, j));
     }
     out.fits.push_back(fit);
     return out;

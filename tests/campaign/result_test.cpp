@@ -67,10 +67,10 @@ TEST(RunResultTest, HoldsWhatTheAnalysisFound) {
       EXPECT_DOUBLE_EQ(fit.parameters[i].std_error, p.std_error / p.parameter.si);
     }
     if (expected.covariance.empty()) continue;
-    ASSERT_EQ(fit.covariance.size(), n * n);
+    ASSERT_EQ(fit.covariance.size(), n);
     for (std::size_t i = 0; i < n; ++i) {
-      EXPECT_NEAR(std::sqrt(fit.covariance[i * n + i]), fit.parameters[i].std_error,
-                  1e-9 * fit.parameters[i].std_error);
+      ASSERT_EQ(fit.covariance[i].size(), n);
+      EXPECT_NEAR(std::sqrt(fit.covariance[i][i]), fit.parameters[i].std_error, 1e-9 * fit.parameters[i].std_error);
     }
   }
   EXPECT_NE(second.fit("exponential", "joint"), nullptr);

@@ -144,6 +144,8 @@ def written(identify, repository):
             kind = {"campaign": None, "summary": "summary", "pooled": "pooled"}.get(path.stem, "result")
             if kind:
                 out.append((path.name, kind, json.loads(path.read_text(encoding="utf-8"))))
+        for path in sorted((folder / "results/kept").glob("*.json")):
+            out.append((path.name, path.suffixes[-2][1:], json.loads(path.read_text(encoding="utf-8"))))
     return out
 
 

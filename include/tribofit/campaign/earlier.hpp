@@ -29,9 +29,6 @@ struct EarlierTable {
   std::vector<std::string> notes;    ///< columns that no campaign knows
 };
 
-/// Name by which a pooled value is known in tables: "mu_s", and "runout.A" for a parameter of an effect.
-std::string full_name(const PooledValue& value);
-
 /// Reads a table of earlier values, as data/published/table4.csv, to be compared with `groups`.
 ///
 /// A row a condition: columns radius, speed, load and further conditions of the campaign by their names, as in a

@@ -14,26 +14,22 @@ namespace tribofit {
 
 /// Values of repeats together, as [D] has them in Fig 5 to 9: plain means over the runs of a group.
 
-/// Mean of one value of each run and its standard error, in the unit of the values. Both are NaN without values, the
-/// error with a single one.
-ResultMeasure mean_over_runs(std::span<const double> values);
-
 /// The pooled value of that name of the base law or a measure; null where there is none.
 const PooledValue* pooled_value(const std::vector<PooledValue>& values, std::string_view name);
 
 /// Its plain mean with the standard error; nothing where there is none.
-std::optional<ResultMeasure> pooled_mean(const std::vector<PooledValue>& values, std::string_view name);
+std::optional<Estimate> pooled_mean(const std::vector<PooledValue>& values, std::string_view name);
 
 /// Fits of a group with this law and protocol; null where there are none.
 const PooledGroup::OfFit* fit_of(const PooledGroup& group, std::string_view law, std::string_view protocol);
 
 /// mu_s - mu_k over the runs of a group: mean and standard error, as [D] Fig 9 has its means; not known for a
 /// law without these levels.
-ResultMeasure drop_of(std::span<const RunResult> runs, const PooledGroup& group, const PooledGroup::OfFit& pooled);
+Estimate drop_of(std::span<const RunResult> runs, const PooledGroup& group, const PooledGroup::OfFit& pooled);
 
 /// Amplitude of the fundamental of v_r over the runs of a group [mm/s]; none where no run has figures.
-std::optional<ResultMeasure> fundamental_of(const ResultReader& results, std::span<const RunResult> runs,
-                                            const PooledGroup& group);
+std::optional<Estimate> fundamental_of(const ResultReader& results, std::span<const RunResult> runs,
+                                       const PooledGroup& group);
 
 /// What the figures of one run show.
 struct FiguresOfRun {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +13,7 @@
 #include "tribofit/campaign/figures.hpp"
 #include "tribofit/ingest/conditions.hpp"
 #include "tribofit/ingest/manifest.hpp"
+#include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit {
 
@@ -35,7 +38,7 @@ struct RunRecord {
   std::vector<OtherCondition> others;
 };
 
-/// A parameter of a stored fit, in `unit`.
+/// A parameter of a stored fit, in `unit`. What is not known is NaN.
 struct ResultParameter {
   std::string name, unit;
   std::string effect;  ///< key; empty for the base law
@@ -43,47 +46,61 @@ struct ResultParameter {
   double std_error = 0;             ///< statistical, from cycle to cycle of the run
   double systematic = 0;            ///< standard uncertainty from the declared instruments; 0 where none is declared
   double lower95 = 0, upper95 = 0;  ///< statistical 95 % interval
-  bool at_bound = false;
+  double profile_lower95 = 0, profile_upper95 = 0;
+  double start = 0, lower = 0, upper = 0;  ///< where the search began, and its bounds
+  bool at_bound = false, determined = true;
 };
+
+/// Name by which a parameter or a measure is known in tables: "mu_s", and "runout.A" for one of an effect.
+inline std::string full_name(const std::string& name, const std::string& effect) {
+  return effect.empty() ? name : effect + "." + name;
+}
 
 /// A stored fit. What is not known is NaN.
 struct ResultFit {
+  struct Correlated {
+    std::array<std::string, 2> parameters;
+    double value = 0;
+  };
+
   std::string law, protocol;  ///< "exponential", "joint"
-  std::vector<std::string> effects;
+  std::vector<std::string> effects, effect_names;
   std::vector<ResultParameter> parameters;
-  std::vector<double> covariance;  ///< statistical, in the units of the parameters, row by row; empty: not known
-  double degrees_of_freedom = 1;   ///< of the t distribution of the statistical errors
-  double rmse = 0, held_out_rmse = 0, floor_rmse = 0;  ///< [1], or [N] where friction is a force
-  double mean_relative = 0, max_relative = 0;          ///< [D] Eq 5
+  std::vector<Correlated> correlations;         ///< those above 0.9 in size
+  std::vector<std::vector<double>> covariance;  ///< statistical, in the units of the parameters; empty: not known
+  double degrees_of_freedom = 1;                ///< of the t distribution of the statistical errors
+  double rmse = 0, held_out_rmse = 0;           ///< [1], or [N] where friction is a force
+  double mean_relative = 0, max_relative = 0;   ///< [D] Eq 5
+  double floor_rmse = 0, noise = 0, scatter = 0, slow_noise = 0;  ///< noise floor and its parts, as rmse
+  std::string floor_source;
   double explained = 0;
-  bool converged = false;
-  std::size_t cycles = 0;
+  double stick_creep = 0, fastest = 0;  ///< [m/s]
+  bool converged = false, conditional = false;
+  std::size_t samples = 0, cycles = 0;
   std::vector<std::string> messages;
 };
 
-/// A stored mean over cycles with its standard error; NaN where not known.
-struct ResultMeasure {
-  double value = std::numeric_limits<double>::quiet_NaN();
-  double std_error = std::numeric_limits<double>::quiet_NaN();
-};
-
-/// The result of one run as read back from its file.
+/// The result of one run as its file has it: made of an analysis, or read back.
 struct RunResult {
+  static constexpr Estimate not_known = {std::numeric_limits<double>::quiet_NaN(),
+                                         std::numeric_limits<double>::quiet_NaN()};
+
   RunRecord run;
   std::size_t position = 0;     ///< in the campaign, from 0
   std::optional<double> order;  ///< rank in time from 0 (ties share their mean), where a condition says it, see below
   Conditions conditions;        ///< as used [SI]
+  std::string path;             ///< of the trace
   std::string friction_unit = "1";  ///< "N" where friction is a force
   std::size_t samples = 0;
   double duration = 0, rate = 0;  ///< [s], [Hz]
   std::string checksum;           ///< of the values of the trace; empty where it was not read
 
   std::size_t cycles = 0;
-  ResultMeasure frequency;   ///< [Hz]
-  ResultMeasure amplitude;   ///< of v_r [mm/s]
-  ResultMeasure stick_time;  ///< [s]
-  ResultMeasure slip_time;   ///< [s]
-  double rms_velocity = 0;   ///< of the block [mm/s]
+  Estimate frequency = not_known;   ///< [Hz]
+  Estimate amplitude = not_known;   ///< of v_r [mm/s]
+  Estimate stick_time = not_known;  ///< [s]
+  Estimate slip_time = not_known;   ///< [s]
+  double rms_velocity = 0;          ///< of the block [mm/s]
 
   std::vector<ResultFit> fits;
   std::size_t best = 0;  ///< index in fits
@@ -95,6 +112,9 @@ struct RunResult {
   /// The fit of that law and protocol; null where there is none with parameters.
   const ResultFit* fit(std::string_view law, std::string_view protocol) const;
 };
+
+/// Of each law the first joint fit with parameters, to know them; with their covariance, where that is asked for.
+std::vector<const ResultFit*> joint_fits(std::span<const RunResult> runs, bool with_covariance = false);
 
 /// A run without a whole result that was made with the settings of the campaign.
 struct MissingRun {
@@ -118,6 +138,9 @@ bool is_whole(std::string_view text);
 
 /// What a campaign is made of, in the folder of its results.
 inline constexpr const char* campaign_name = "campaign.json";
+/// Beside the results, what figures and fits of all runs together take of the samples: many numbers that few ask for,
+/// in files of their own, with the hash of the run's settings.
+inline constexpr const char* kept_folder = "kept";
 
 /// The folder of traces that a folder of results belongs to (empty: named one by one); nothing where campaign.json is
 /// missing or damaged. Never throws.
@@ -132,6 +155,13 @@ struct PlannedRun {
   std::string name, file, settings;
 };
 
+/// campaign.json: what was planned.
+struct CampaignPlan {
+  std::string folder;  ///< of the traces; empty where they were named one by one
+  std::vector<PlannedRun> runs;
+  std::vector<std::string> problems;  ///< rows of the manifest that name no run of their own
+};
+
 /// The results of a campaign one after the other, so that memory does not grow with what they hold.
 class ResultReader {
  public:
@@ -139,10 +169,10 @@ class ResultReader {
   explicit ResultReader(std::string folder);
 
   const std::string& folder() const { return folder_; }
-  const std::string& traces() const { return traces_; }  ///< see CampaignResults::folder
-  const std::vector<std::string>& problems() const { return problems_; }
-  std::size_t size() const { return runs_.size(); }  ///< runs of the campaign
-  const std::vector<PlannedRun>& plan() const { return runs_; }
+  const std::string& traces() const { return plan_.folder; }  ///< see CampaignPlan
+  const std::vector<std::string>& problems() const { return plan_.problems; }
+  std::size_t size() const { return plan_.runs.size(); }  ///< runs of the campaign
+  const std::vector<PlannedRun>& plan() const { return plan_.runs; }
   /// The result of the k-th run, without its order in time; nothing where it is missing.
   std::optional<RunResult> read(std::size_t k) const;
   /// The figures kept with the result that read() returns; nothing where it could not be analysed.
@@ -152,9 +182,8 @@ class ResultReader {
   MissingRun missing(std::size_t k) const;
 
  private:
-  std::string folder_, traces_;
-  std::vector<std::string> problems_;
-  std::vector<PlannedRun> runs_;
+  std::string folder_;
+  CampaignPlan plan_;
 };
 
 /// Reads all results of a campaign; `order` comes from the first further condition that is called order, run

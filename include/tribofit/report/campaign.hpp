@@ -13,11 +13,12 @@
 
 namespace tribofit {
 
-/// The file of one run: the object of to_json(), with "run": what the campaign says of it
-/// {"name", "file", "key", "settings", "status", "message", "stated", "repeat", "others"}, and
-/// "figures": what figures_of() takes from it, sealed (see sealed()).
-/// `result` is null where the run could not be read; its "fits" are empty then.
-std::string run_json(const RunRecord& run, const Identification* result, const JsonOptions& options = {});
+/// Writes the file of one run, NAME.json: the object of to_json(), with "run": what the campaign says of it
+/// {"name", "file", "key", "settings", "status", "message", "stated", "repeat", "others"}, sealed (see sealed()).
+/// Before it the folder "kept" gets NAME.figures.json, what figures_of() takes from the run, and NAME.condensed.json.
+/// `result` is null where the run could not be read; its "fits" are empty then. Throws WriteError.
+void write_run(const std::string& results, const RunRecord& run, const Identification* result,
+               const JsonOptions& options = {});
 
 /// What became of the runs of a campaign.
 struct CampaignSummary {

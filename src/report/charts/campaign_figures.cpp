@@ -15,7 +15,7 @@
 namespace tribofit {
 namespace {
 
-using Maybe = std::optional<ResultMeasure>;
+using Maybe = std::optional<Estimate>;
 
 /// "mu_s" as markup: "mu_{s}".
 std::string with_subscript(const std::string& name) {

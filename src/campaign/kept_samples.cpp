@@ -1,0 +1,99 @@
+#include "kept_samples.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <system_error>
+
+#include "sealed.hpp"
+#include "tribofit/output/whole_file.hpp"
+
+namespace tribofit {
+namespace {
+
+/// Whether slips and values fit together: another program may have written the file.
+bool is_consistent(const Observations& o) {
+  std::size_t end = 0;
+  for (const auto& slip : o.slips) {
+    if (slip.begin != end || slip.end < slip.begin) return false;
+    end = slip.end;
+  }
+  const bool has_variance = !o.velocity_variance.empty();
+  return o.velocity.size() == end && o.friction.size() == end && o.weight.size() == end &&
+         (!has_variance || o.velocity_variance.size() == end);
+}
+
+/// What follows from the values that were kept.
+void complete(Observations& o) {
+  o.slowest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < o.slips.size(); ++k) {
+    o.slips[k].segment = k;
+    o.cycles = std::max(o.cycles, o.slips[k].cycle + 1);
+    if (o.slips[k].from_stick) o.slowest = 0;
+  }
+  o.time.assign(o.velocity.size(), 0.0);  // laws of speed know none
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    o.root_weight.push_back(std::sqrt(o.weight[i]));
+    o.slowest = std::min(o.slowest, std::abs(o.velocity[i]));
+    o.fastest = std::max(o.fastest, std::abs(o.velocity[i]));
+    o.largest_friction = std::max(o.largest_friction, std::abs(o.friction[i]));
+  }
+  o.friction_scale = std::max(1.0, o.largest_friction);  // what kind of friction it is was not kept
+}
+
+std::string path_of(const std::string& results, const std::string& name, const char* what) {
+  return (std::filesystem::path(results) / kept_folder / (name + "." + what + ".json")).string();
+}
+
+template <class Struct>
+void keep(const std::string& path, const std::string& settings, const Struct& what) {
+  Json json = json_of(what);
+  json["settings"] = settings;
+  write_whole(path, sealed(line_of(json)));
+}
+
+template <class Struct>
+std::optional<Struct> kept(const std::string& path, const std::string& settings) {
+  const auto json = read_sealed(path);
+  if (!json || json->value("settings", std::string()) != settings) return std::nullopt;
+  return read_from<Struct>(*json);
+}
+
+}  // namespace
+
+void keep_samples(const std::string& results, const RunRecord& run, const Identification* result) {
+  const std::string figures = path_of(results, run.name, "figures"), values = path_of(results, run.name, "condensed");
+  std::error_code ignored;  // a file that cannot be written says so
+  if (result == nullptr || !result->analysed) {
+    std::filesystem::remove(figures, ignored);  // of an earlier analysis
+    std::filesystem::remove(values, ignored);
+    return;
+  }
+  std::filesystem::create_directory(std::filesystem::path(results) / kept_folder, ignored);
+  keep(figures, run.settings, figures_of(*result));
+  keep(values, run.settings, condensed(*result));
+}
+
+std::optional<RunFigures> ResultReader::figures(std::size_t k) const {
+  const PlannedRun& run = plan_.runs.at(k);
+  try {
+    return kept<RunFigures>(path_of(folder_, run.name, "figures"), run.settings);
+  } catch (const Json::exception&) {  // whole, but of another make
+    return std::nullopt;
+  }
+}
+
+std::optional<CondensedRun> ResultReader::condensed(std::size_t k) const {
+  const PlannedRun& run = plan_.runs.at(k);
+  try {
+    auto out = kept<CondensedRun>(path_of(folder_, run.name, "condensed"), run.settings);
+    if (!out || !is_consistent(out->observations)) return std::nullopt;
+    complete(out->observations);
+    return out;
+  } catch (const Json::exception&) {  // whole, but of another make
+    return std::nullopt;
+  }
+}
+
+}  // namespace tribofit
