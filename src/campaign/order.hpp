@@ -14,7 +14,7 @@ bool tells_order(const std::string& name);
 /// The number that a cell holds, and nothing else.
 std::optional<double> number_in(const std::string& text);
 
-/// Sets the order in time of runs whose conditions state it, see read_campaign().
+/// Sets the order in time of runs whose conditions state it, see read_results().
 void put_in_order(std::span<RunResult> runs);
 
 }  // namespace tribofit

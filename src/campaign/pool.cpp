@@ -19,7 +19,7 @@ ManifestRow stated(const RunResult& run) {
   ManifestRow row;
   row.conditions = run.run.conditions;
   for (const OtherCondition& other : run.run.others) {
-    if (!is_order(other)) row.others.push_back(other);
+    if (!tells_order(other.name)) row.others.push_back(other);
   }
   return row;
 }
@@ -88,10 +88,6 @@ std::vector<PooledValue> pool_measures(std::span<const RunResult> runs, const st
 }
 
 }  // namespace
-
-bool is_order(const OtherCondition& condition) {
-  return tells_order(condition.name);
-}
 
 PooledValue pool(std::string name, std::string unit, std::span<const double> values, std::span<const double> std_errors,
                  std::span<const double> systematic) {

@@ -138,21 +138,15 @@ MissingRun ResultReader::missing(std::size_t k) const {
   return {plan_.runs[k].name, plan_.runs[k].file, k};
 }
 
-CampaignResults read_campaign(const std::string& folder) {
+std::vector<RunResult> read_results(const std::string& folder) {
   const ResultReader reader(folder);
-  CampaignResults results;
-  results.folder = reader.traces();
-  results.problems = reader.problems();
+  std::vector<RunResult> runs;
   for (std::size_t k = 0; k < reader.size(); ++k) {
-    if (auto result = reader.read(k)) {
-      results.runs.push_back(std::move(*result));
-    } else {
-      results.missing.push_back(reader.missing(k));
-    }
+    if (auto result = reader.read(k)) runs.push_back(std::move(*result));
   }
-  put_in_order(results.runs);
-  count_copies_once(results.runs);
-  return results;
+  put_in_order(runs);
+  count_copies_once(runs);
+  return runs;
 }
 
 void count_copies_once(std::vector<RunResult>& runs) {
@@ -166,10 +160,6 @@ void count_copies_once(std::vector<RunResult>& runs) {
         fmt::format("{} holds the same values as {}: a copy is no repeat, it counts once", run.run.file, at->second);
     run.fits.clear();
   }
-}
-
-std::vector<RunResult> read_results(const std::string& folder) {
-  return read_campaign(folder).runs;
 }
 
 }  // namespace tribofit

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "statistics/reductions.hpp"
+#include "tribofit/campaign/group_values.hpp"
 #include "tribofit/friction/laws/all.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
@@ -81,20 +82,9 @@ bool is_constant(const std::string& key) {
   return law && constant_in_slip(*law);
 }
 
-/// The two laws that most runs were fitted with by the joint protocol, in the order of the fits.
-std::vector<std::string> two_laws(std::span<const PooledGroup> groups) {
-  std::vector<std::string> laws;
-  for (const PooledGroup& group : groups) {
-    for (const auto& fit : group.fits) {
-      const bool known = std::find(laws.begin(), laws.end(), fit.law) != laws.end();
-      if (fit.protocol == to_string(Protocol::joint) && !is_constant(fit.law) && !known) laws.push_back(fit.law);
-    }
-  }
-  return laws;
-}
-
 void add_preferences(std::span<const RunResult> runs, std::span<const PooledGroup> groups, Statements& out) {
-  const std::vector<std::string> laws = two_laws(groups);
+  std::vector<std::string> laws = joint_laws(groups);
+  std::erase_if(laws, is_constant);
   if (laws.size() != 2) return;
   std::vector<std::vector<double>> all;
   for (const PooledGroup& group : groups) {

@@ -83,12 +83,12 @@ constexpr NullWhereNone<Get> or_null(Get get) {
 
 /// The ends of an interval as a list of two.
 template <class Lower, class Upper>
-struct Ends {
+struct IntervalEnds {
   Lower lower;
   Upper upper;
 };
 template <class Lower, class Upper>
-constexpr Ends<Lower, Upper> ends(Lower lower, Upper upper) {
+constexpr IntervalEnds<Lower, Upper> ends(Lower lower, Upper upper) {
   return {lower, upper};
 }
 
@@ -158,11 +158,11 @@ void read_into(const NullWhereNone<Get>& part, const Json& json, Struct& to) {
 }
 
 template <class Lower, class Upper, class Struct>
-Json written(const Ends<Lower, Upper>& part, const Struct& from) {
+Json written(const IntervalEnds<Lower, Upper>& part, const Struct& from) {
   return interval_json(std::invoke(part.lower, from), std::invoke(part.upper, from));
 }
 template <class Lower, class Upper, class Struct>
-void read_into(const Ends<Lower, Upper>& part, const Json& json, Struct& to) {
+void read_into(const IntervalEnds<Lower, Upper>& part, const Json& json, Struct& to) {
   read_json(json.at(0), std::invoke(part.lower, to));
   read_json(json.at(1), std::invoke(part.upper, to));
 }

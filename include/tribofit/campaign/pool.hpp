@@ -40,9 +40,6 @@ struct PooledGroup {
   std::vector<PooledValue> measures;  ///< frequency, amplitude, stick_time, slip_time, rms_velocity
 };
 
-/// Whether a condition only says when a run was made, so that runs that differ in it repeat one another.
-bool is_order(const OtherCondition& condition);
-
 /// Pools repeats: runs whose stated conditions (radius, speed, load, any further one but the order) are equal.
 ///
 /// The mean over runs of y_i with errors v_i and scatter tau^2 between them: see meta_regression(); intervals cover

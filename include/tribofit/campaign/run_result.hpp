@@ -122,14 +122,6 @@ struct MissingRun {
   std::size_t position = 0;
 };
 
-/// The results of a campaign as they lie in a folder.
-struct CampaignResults {
-  std::string folder;                 ///< of the traces; empty where they were named one by one
-  std::vector<RunResult> runs;        ///< in the order of the campaign
-  std::vector<MissingRun> missing;    ///< in the order of the campaign
-  std::vector<std::string> problems;  ///< rows of the manifest that name no run of their own
-};
-
 /// A JSON object with its own checksum as last key, which shows a cut or damaged file.
 std::string sealed(std::string_view json);
 
@@ -190,13 +182,10 @@ class ResultReader {
 /// order, sequence, date, time, timestamp, start or the like and that every run states (numbers by size, else as text,
 /// which puts ISO dates in order). Copies count once. Throws InputError where the folder holds no campaign. Cost:
 /// linear in runs.
-CampaignResults read_campaign(const std::string& folder);
+std::vector<RunResult> read_results(const std::string& folder);
 
 /// Of runs that hold the same values (a copy of a file is no repeat) the first counts: the others become failed,
 /// without fits, and their message says so.
 void count_copies_once(std::vector<RunResult>& runs);
-
-/// The runs of read_campaign().
-std::vector<RunResult> read_results(const std::string& folder);
 
 }  // namespace tribofit
