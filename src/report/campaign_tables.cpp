@@ -114,11 +114,11 @@ ReportTable groups_table(std::span<const PooledGroup> groups) {
   for (const PooledGroup& group : groups) {
     for (const PooledGroup::OfFit& fit : group.fits) {
       for (const PooledValue& v : fit.parameters) {
-        table.rows.push_back(value_row(v, full_name(v), fit.law, fit.protocol, conditions_text(group)));
+        table.rows.push_back(value_row(v, full_name(v.name, v.effect), fit.law, fit.protocol, conditions_text(group)));
       }
     }
     for (const PooledValue& v : group.measures)
-      table.rows.push_back(value_row(v, full_name(v), "", "", conditions_text(group)));
+      table.rows.push_back(value_row(v, full_name(v.name, v.effect), "", "", conditions_text(group)));
   }
   return table;
 }
@@ -193,8 +193,8 @@ ReportTable repeats_table(std::span<const PooledGroup> groups) {
         const bool known = v.runs > 0 && std::isfinite(v.std_error) && v.std_error > 0;
         const int places = known ? places_for(v.std_error) : 4;
         const std::string value = v.runs == 0 ? "-" : known ? fixed(v.value, places) : significant(v.value, 4);
-        table.rows.push_back({first_of_group ? conditions_text(group) : "", first_of_law ? fit.law : "", full_name(v),
-                              value + (v.runs == 1 ? " *" : ""),
+        table.rows.push_back({first_of_group ? conditions_text(group) : "", first_of_law ? fit.law : "",
+                              full_name(v.name, v.effect), value + (v.runs == 1 ? " *" : ""),
                               known ? interval_text(v.lower95, v.upper95, places) : "-", v.unit == "1" ? "" : v.unit,
                               std::to_string(v.runs), v.runs > 1 ? std::to_string(v.runs - 1) : "-",
                               first_of_law ? std::to_string(fit.best_in) : ""});
