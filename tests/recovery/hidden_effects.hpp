@@ -6,6 +6,7 @@
 /// Every case is made from its own seed, which follows from its name: a case that failed is rerun by name alone, and
 /// results do not depend on the number of threads or on which other cases are run.
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -188,6 +189,8 @@ struct Recovered {
   double truth = 0, value = 0, lower95 = 0, upper95 = 0;  ///< in the unit of the catalogue
   double std_error = 0;
 
+  /// false: the data do not bound it, and no interval is given.
+  bool has_interval() const { return std::isfinite(std_error); }
   bool is_covered() const { return lower95 <= truth && truth <= upper95; }
 };
 

@@ -40,7 +40,7 @@ void add_row(std::string& text, const std::string& name, const Outcomes& g) {
   fmt::format_to(std::back_inserter(text), "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name, g.size(),
                  count(g, Naming::alone), count(g, Naming::group), count(g, Naming::beside), count(g, Naming::wrong),
                  count(g, Naming::missed), mean_group(g), percent(count(g, is_low), g.size()), percent(p.close, p.n),
-                 percent(p.covered, p.n));
+                 percent(p.covered, p.intervals));
 }
 
 std::string singles_table(const Outcomes& singles) {
@@ -179,7 +179,7 @@ std::string summary(const std::vector<Outcome>& all) {
   share("held-out error within 1.15 times what the true law leaves, where named", named, is_low);
   const Parameters p = parameters(named);
   row("main parameters within 10 %", p.n, recovery::share(p.close, p.n));
-  row("main parameters inside their 95 % interval", p.n, recovery::share(p.covered, p.n));
+  row("main parameters inside their 95 % interval", p.intervals, recovery::share(p.covered, p.intervals));
   row("mean size of the group that holds the hidden effect", singles.size(), mean_group(singles));
   Outcomes tried;
   std::copy_if(singles.begin(), singles.end(), std::back_inserter(tried), was_tried);

@@ -53,7 +53,7 @@ inline bool is_right(const Outcome* o) {
 }
 
 struct Parameters {
-  std::size_t n = 0, close = 0, covered = 0;
+  std::size_t n = 0, close = 0, intervals = 0, covered = 0;
 };
 
 inline Parameters parameters(const Outcomes& outcomes) {
@@ -63,7 +63,8 @@ inline Parameters parameters(const Outcomes& outcomes) {
     for (const Recovered& p : o->parameters) {
       ++out.n;
       out.close += std::abs(p.value - p.truth) <= 0.1 * std::abs(p.truth) ? 1u : 0u;
-      out.covered += p.lower95 <= p.truth && p.truth <= p.upper95 ? 1u : 0u;
+      out.intervals += p.has_interval() ? 1u : 0u;
+      out.covered += p.has_interval() && p.is_covered() ? 1u : 0u;
     }
   }
   return out;

@@ -14,6 +14,7 @@ struct Coverage {
   std::size_t n = 0, covered = 0;
 
   void add(const Recovered& p) {
+    if (!p.has_interval()) return;
     ++n;
     covered += p.is_covered() ? 1u : 0u;
   }
