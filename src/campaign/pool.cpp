@@ -40,22 +40,20 @@ PooledGroup::OfFit pool_fits(std::span<const RunResult> runs, const std::vector<
   for (std::size_t p = 0; p < like.parameters.size(); ++p) {
     const ResultParameter& parameter = like.parameters[p];
     Column column;
+    const ResultParameter* last = nullptr;  // with an error that is known
     for (const std::size_t r : members) {
       const ResultFit* fit = runs[r].fit(like.law, like.protocol);
       if (fit == nullptr || p >= fit->parameters.size() || fit->parameters[p].name != parameter.name) continue;
       const ResultParameter& q = fit->parameters[p];
       column.add(q.value, q.at_bound ? kNaN : q.std_error, q.systematic);
+      if (!q.at_bound && std::isfinite(q.value) && q.std_error > 0 && std::isfinite(q.std_error)) last = &q;
     }
     out.parameters.push_back(pool(parameter.name, parameter.unit, column.values, column.std_errors, column.systematic));
     PooledValue& value = out.parameters.back();
     value.effect = parameter.effect;
-    if (value.runs != 1) continue;
-    for (const std::size_t r : members) {  // the interval of the one run, with its own degrees of freedom
-      const ResultFit* fit = runs[r].fit(like.law, like.protocol);
-      if (fit == nullptr || p >= fit->parameters.size() || fit->parameters[p].value != value.value) continue;
-      value.lower95 = fit->parameters[p].lower95;
-      value.upper95 = fit->parameters[p].upper95;
-    }
+    if (value.runs != 1 || last == nullptr) continue;
+    value.lower95 = last->lower95;  // of the one run, with its own degrees of freedom
+    value.upper95 = last->upper95;
   }
   for (const std::size_t r : members) {
     const RunResult& run = runs[r];
