@@ -90,6 +90,7 @@ Summarised summarise(const Settings& s, const ResultReader& results, const Repor
   const Report report = report_of(results, runs, pooled, comparison, options);
   ReportFiles drawn(s, report);
   out.summary = write_summary(results, json);
+  out.summary.missing = results.size() - runs.size();  // as the table says: another batch may have written meanwhile
   drawn.commit();
   out.table = render_terminal(report, options);
   if (!out.note.empty()) out.table += folded(out.note) + "\n";

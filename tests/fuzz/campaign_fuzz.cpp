@@ -1,6 +1,7 @@
 // What campaigns read back: earlier tables, and results that other processes wrote.
 
 #include <cmath>
+#include <filesystem>
 
 #include "scratch.hpp"
 #include "targets.hpp"
@@ -62,6 +63,10 @@ void read_results_bytes(std::string_view bytes) {
   "problems": []
 }
 )"));
+  std::filesystem::create_directory(scratch / kept_folder);
+  for (const char* kept : {"a.figures.json", "a.condensed.json"}) {
+    scratch.write(std::string(kept_folder) + "/" + kept, sealed(bytes));
+  }
   const std::string path = scratch.write("a.json", sealed(bytes));
   read_record(path);
   read_all(scratch.path());
