@@ -90,15 +90,15 @@ TEST(CommandLine, refuses_what_it_cannot_mean) {
   };
   EXPECT_THAT(refused("--start mus=0.5"), HasSubstr("did you mean 'mu_s'"));
   EXPECT_THAT(refused("--start tau=2ms"), HasSubstr("no parameter 'tau'"));
-  EXPECT_THAT(refused("--start alpha=2mm"), HasSubstr("is not a unit of alpha"));
+  EXPECT_THAT(refused("--start alpha=2mm"), HasSubstr("'2mm' is a length, not an inverse velocity"));
   EXPECT_THAT(refused("--start alpha"), HasSubstr("NAME=VALUE"));
   EXPECT_THAT(refused("--bounds alpha=0.2..0.1"), HasSubstr("from high to low"));
-  EXPECT_THAT(refused("--bounds alpha=0.2"), HasSubstr("FROM..TO"));
+  EXPECT_THAT(refused("--bounds alpha=0.2"), HasSubstr("not a range; write it as alpha="));
   EXPECT_THAT(refused("--start mu_s=0.9 --bounds mu_s=0.1..0.2"), HasSubstr("beyond"));
-  EXPECT_THAT(refused("--cycles 5"), HasSubstr("FROM..TO"));
+  EXPECT_THAT(refused("--cycles 5"), HasSubstr("not a range; write it as 3..40"));
   EXPECT_THAT(refused("--cycles 7..5"), HasSubstr("FIRST..LAST"));
   EXPECT_THAT(refused("--exclude 3s..2s"), HasSubstr("earlier to a later"));
-  EXPECT_THAT(refused("--exclude 3mm..4mm"), HasSubstr("not a unit of time"));
+  EXPECT_THAT(refused("--exclude 3mm..4mm"), HasSubstr("'3mm' is a length, not a time"));
 }
 
 }  // namespace
