@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -65,12 +63,10 @@ std::string value_of(const Json& parameter) {
   const std::string unit = parameter.at("unit") == "1" ? "" : " " + parameter.at("unit").get<std::string>();
   if (!parameter.at("std_error").is_number()) return fmt::format("{} = {}{} (held)", name, general(value), unit);
   const double error = parameter.at("std_error").get<double>();
-  const int places = error > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12) : 6;
-  std::string text = fmt::format("{} = ({:.{}f} +/- {:.{}f}){}", name, value, places, error, places, unit);
+  std::string text = fmt::format("{} = ({}){}", name, with_error(value, error), unit);
   const Json& interval = parameter.at("ci95");
   if (interval.is_array() && interval.at(0).is_number() && interval.at(1).is_number()) {
-    text +=
-        fmt::format(" [{:.{}f}, {:.{}f}]", interval.at(0).get<double>(), places, interval.at(1).get<double>(), places);
+    text += " " + interval_text(interval.at(0).get<double>(), interval.at(1).get<double>(), places_for(error));
   }
   return text;
 }

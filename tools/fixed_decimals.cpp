@@ -1,12 +1,11 @@
 #include "fixed_decimals.hpp"
 
-#include <fmt/format.h>
-
 #include <array>
 #include <charconv>
 #include <cmath>
 
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/output/digits.hpp"
 
 namespace tribofit {
 
@@ -17,7 +16,7 @@ void append_fixed(std::string& text, double value, int decimals) {
       throw InputError("the simulated record holds a value that is no finite number",
                        "give friction, rig and sensors smaller values");
     }
-    text += fmt::format("{:.{}f}", value, decimals);
+    text += fixed(value, decimals);
     return;
   }
   constexpr std::array<double, 10> kPower = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};

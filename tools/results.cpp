@@ -10,6 +10,7 @@
 #include "exit_status.hpp"
 #include "tribofit/ingest/output_tables.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/report/page.hpp"
 #include "tribofit/report/terminal.hpp"
 
@@ -62,8 +63,8 @@ std::uintmax_t size_of(const std::filesystem::path& path) {
 std::string size_text(std::uintmax_t bytes) {
   const double size = static_cast<double>(bytes);
   if (size < 1e3) return fmt::format("{} bytes", bytes);
-  if (size < 1e6) return fmt::format("{:.{}f} kB", size / 1e3, size < 1e4 ? 1 : 0);
-  return fmt::format("{:.{}f} MB", size / 1e6, size < 1e7 ? 1 : 0);
+  if (size < 1e6) return fixed(size / 1e3, size < 1e4 ? 1 : 0) + " kB";
+  return fixed(size / 1e6, size < 1e7 ? 1 : 0) + " MB";
 }
 
 /// "wrote FILE (2.1 MB)", a line each.

@@ -87,7 +87,8 @@ std::string rows_of(const StepsPlan& plan, const std::vector<double>& friction, 
       ++phase;
     }
     const double moved = displacement + plan.phases[phase].speed * (t - plan.phases[phase].begin);
-    text += fmt::format("{:.6f},{:.4f},{:.7f}\n", t, moved / kMicro, friction[i] + plan.drift * t + plan.noise * noise);
+    text += fmt::format("{},{},{}\n", fixed(t, 6), fixed(moved / kMicro, 4),
+                        fixed(friction[i] + plan.drift * t + plan.noise * noise, 7));
   }
   return text;
 }

@@ -13,6 +13,7 @@
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
@@ -100,8 +101,8 @@ class Assembler {
       trace_.conditions.*condition = common(condition);
     }
     if (radii.empty() && run_.recipe_size() > 1 && options_.conditions.radius.known()) {
-      trace_.notes.push_back(fmt::format("the radius of {:g} mm was taken for all {} steps",
-                                         1e3 * trace_.conditions.radius.value, run_.recipe_size()));
+      trace_.notes.push_back(fmt::format("the radius of {} mm was taken for all {} steps",
+                                         general(1e3 * trace_.conditions.radius.value), run_.recipe_size()));
     }
   }
 
@@ -116,7 +117,7 @@ class Assembler {
 
   void refuse_radius(double radius) const {
     if (radius > kSmallestRadius && std::isfinite(radius)) return;
-    throw InputError(fmt::format("a friction radius of {:g} mm is not possible", 1e3 * radius),
+    throw InputError(fmt::format("a friction radius of {} mm is not possible", general(1e3 * radius)),
                      "give a radius above zero", file());
   }
 
@@ -178,9 +179,8 @@ class Assembler {
         if (!step.conditions.load.known()) step.conditions.load = mean_load(load, step);
       }
     } else if (std::abs(mean / trace_.conditions.load.value - 1) > kLoadKnownTo) {
-      trace_.warnings.push_back(
-          fmt::format("the stated load of {:g} N contradicts the mean of the load channel, {:.4g} N",
-                      trace_.conditions.load.value, mean));
+      trace_.warnings.push_back(fmt::format("the stated load of {} N contradicts the mean of the load channel, {} N",
+                                            general(trace_.conditions.load.value), general(mean, 4)));
     }
   }
 
@@ -250,7 +250,7 @@ class Assembler {
     }
     const Condition& load = trace_.conditions.load;
     trace_.notes.push_back("mu is " + force + " over the nominal load of " +
-                           (load.known() ? fmt::format("{:g} N", load.value) : std::string("each step")));
+                           (load.known() ? fmt::format("{} N", general(load.value)) : std::string("each step")));
   }
 
   void divide_by_measured_load(const std::string& force) {
@@ -258,7 +258,7 @@ class Assembler {
     for (std::size_t i = 0; i < load.size(); ++i) {
       if (!(load[i] > kSmallestLoad)) {
         throw InputError(
-            fmt::format("the load is {:g} N, and friction is {} over load", load[i], force),
+            fmt::format("the load is {} N, and friction is {} over load", general(load[i]), force),
             "remove the rows without load, or leave the channel out with --columns load=none and state --load",
             run_.location(i, Channel::load));
       }
@@ -273,7 +273,8 @@ class Assembler {
     const Extremes friction = extremes(trace_.friction);
     const double largest = std::max(-friction.low, friction.high);
     if (largest <= kLargestCoefficient) return;
-    trace_.warnings.push_back(fmt::format("friction reaches {:.4g}: is the column really a coefficient?", largest));
+    trace_.warnings.push_back(
+        fmt::format("friction reaches {}: is the column really a coefficient?", general(largest, 4)));
   }
 
   /// What the user states beats the column: a column that contradicts it is not used.
@@ -283,10 +284,10 @@ class Assembler {
     if (column.empty() || !stated.known()) return;
     const double usual = median(column);
     if (std::abs(usual - stated.value) <= kSpeedKnownTo * std::abs(stated.value)) return;
-    trace_.warnings.push_back(
-        fmt::format("the stated speed of {:.4g} rpm ({}) contradicts the median of the speed column, {:.4g} rpm; the "
-                    "stated speed is used and the column is not",
-                    stated.value / kRpm, stated.source.empty() ? "stated" : stated.source, usual / kRpm));
+    trace_.warnings.push_back(fmt::format(
+        "the stated speed of {} rpm ({}) contradicts the median of the speed column, {} rpm; the "
+        "stated speed is used and the column is not",
+        general(stated.value / kRpm, 4), stated.source.empty() ? "stated" : stated.source, general(usual / kRpm, 4)));
     column.clear();
   }
 

@@ -11,6 +11,7 @@
 #include "limits.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -136,7 +137,7 @@ class Clock {
     } else if (!in_recipe) {
       step.label = recording_.steps.back().label;
     } else if (!step_.empty()) {
-      step.label = fmt::format("{:g}", step_[row]);
+      step.label = fmt::format("{}", general(step_[row]));
     }
     const std::size_t recipe = recording_.recipe_size();
     recording_.recipe_steps.push_back(in_recipe ? recipe : recipe - 1);
@@ -146,7 +147,8 @@ class Clock {
   [[noreturn]] void refuse(std::size_t row, double last) const {
     const bool repeats = time_[row] == last;
     throw InputError(
-        fmt::format("time {} ({:.9g} s after {:.9g} s)", repeats ? "repeats" : "goes backwards", time_[row], last),
+        fmt::format("time {} ({} s after {} s)", repeats ? "repeats" : "goes backwards", general(time_[row], 9),
+                    general(last, 9)),
         repeats ? "remove the row; where the clock is written too coarsely, give the sampling rate with --rate"
                 : "sort or split the file; steps whose clock restarts need their own start time or a step column",
         recording_.location(row, Channel::time));
@@ -160,21 +162,20 @@ class Clock {
 
   void refuse_irregular() const {
     if (gaps_.size() <= kMostGaps || gaps_.size() * kRowsPerGap <= time_.size()) return;
-    throw InputError(
-        fmt::format("the clock is irregular: {} intervals are longer than {:g} times the median of {:.6g} s",
-                    gaps_.size(), kGapInterval, interval_),
-        "resample the trace; where the clock is written too coarsely, give the sampling rate with --rate",
-        recording_.location(gaps_.front(), Channel::time));
+    throw InputError(fmt::format("the clock is irregular: {} intervals are longer than {} times the median of {} s",
+                                 gaps_.size(), general(kGapInterval), general(interval_, 6)),
+                     "resample the trace; where the clock is written too coarsely, give the sampling rate with --rate",
+                     recording_.location(gaps_.front(), Channel::time));
   }
 
   void warn_of_gaps() {
     if (gaps_.empty()) return;
     const std::size_t first = gaps_.front();
-    recording_.warnings.push_back(fmt::format(
-        "{} gap{} in time, the first of {:.6g} s before {} (interval {:.6g} s); the data after a gap are a step of "
-        "their own",
-        gaps_.size(), gaps_.size() == 1 ? "" : "s", time_[first] - time_[first - 1], recording_.place_of(first),
-        interval_));
+    recording_.warnings.push_back(
+        fmt::format("{} gap{} in time, the first of {} s before {} (interval {} s); the data after a gap are a step of "
+                    "their own",
+                    gaps_.size(), gaps_.size() == 1 ? "" : "s", general(time_[first] - time_[first - 1], 6),
+                    recording_.place_of(first), general(interval_, 6)));
   }
 
   void note_restarts() {
@@ -229,10 +230,10 @@ std::optional<Sampling> sampling_from(const RawFact& fact) {
 }  // namespace
 
 std::optional<Sampling> stated_sampling(const RawTable& table, std::size_t rows, std::optional<double> rate) {
-  if (rate) return Sampling{0, *rate, 0, true, fmt::format("the sampling rate of {:g} Hz", *rate)};
+  if (rate) return Sampling{0, *rate, 0, true, fmt::format("the sampling rate of {} Hz", general(*rate))};
   if (const auto interval = table.rows[rows].interval) {
     return Sampling{table.rows[rows].start, 0, *interval, false,
-                    fmt::format("the interval of {:g} s in the file", *interval)};
+                    fmt::format("the interval of {} s in the file", general(*interval))};
   }
   for (const RawFact& fact : table.facts) {
     if (auto sampling = sampling_from(fact)) return sampling;
@@ -259,8 +260,8 @@ void set_clock(FileRecord& recording, const std::optional<Sampling>& sampling, i
   if (sampling && sampling->by_user) {
     const double found = 1 / typical_interval(recording[Channel::time]);
     if (std::abs(found / sampling->rate - 1) > kSameRate) {
-      recording.warnings.push_back(
-          fmt::format("the stated rate of {:g} Hz was not used: the time column says {:g} Hz", sampling->rate, found));
+      recording.warnings.push_back(fmt::format("the stated rate of {} Hz was not used: the time column says {} Hz",
+                                               general(sampling->rate), general(found)));
     }
   }
   Clock(recording, threads).run();

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "limits.hpp"
+#include "tribofit/output/digits.hpp"
 
 namespace tribofit {
 
@@ -34,9 +35,8 @@ std::vector<std::string> warnings_beside_declared(const Conditions& used, const 
     const double allowed =
         std::max(kDeclaredRounding * std::abs(declared->value), kDeclaredWithin * declared->uncertainty);
     if (std::abs(condition.value - declared->value) <= allowed) return;
-    warnings.push_back(
-        fmt::format("the {} from the {} ({:.4g} in SI units) is used, not that of the instruments file ({:.4g})", name,
-                    condition.source, condition.value, declared->value));
+    warnings.push_back(fmt::format("the {} from the {} ({} in SI units) is used, not that of the instruments file ({})",
+                                   name, condition.source, general(condition.value, 4), general(declared->value, 4)));
   };
   compare(used.radius, instruments.rig.radius, "radius");
   compare(used.speed, instruments.rig.speed, "disc speed");

@@ -8,6 +8,7 @@
 #include "limits.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "tribofit/output/digits.hpp"
 
 namespace tribofit {
 namespace {
@@ -24,7 +25,7 @@ bool is_usable(double value) {
   const auto& known = table.first_gap;
   if (known && known->row == row) throw InputError(known->problem, known->advice, where);
   throw InputError(
-      fmt::format("'{:g}' is not a finite number of a usable size", table.columns[column->index].numbers[row]),
+      fmt::format("'{}' is not a finite number of a usable size", general(table.columns[column->index].numbers[row])),
       "fill it in or remove the row", where);
 }
 

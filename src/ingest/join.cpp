@@ -13,6 +13,7 @@
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
+#include "tribofit/output/digits.hpp"
 
 namespace tribofit {
 namespace {
@@ -80,12 +81,12 @@ double find_offset(FileRecord& run, const FileRecord& other, const ClockOffsetFi
     run.clock_offset_std_error = std::numeric_limits<double>::quiet_NaN();
     return overlap ? as_written : 0;
   }
-  run.notes.push_back(fmt::format(
-      "clock offset from {} break-aways: {:+.6f} s (+-{:.2g} s) added to the times of {}, right in the middle "
-      "of the common time as one clock drifts by {:+.1f} ppm (+-{:.1f}) against the other; it holds any lag "
-      "of friction behind velocity too",
-      found.events, found.offset - as_written, found.uncertainty, other.path, 1e6 * found.drift,
-      1e6 * found.drift_uncertainty));
+  run.notes.push_back(
+      fmt::format("clock offset from {} break-aways: {} s (+-{} s) added to the times of {}, right in the middle "
+                  "of the common time as one clock drifts by {} ppm (+-{}) against the other; it holds any lag "
+                  "of friction behind velocity too",
+                  found.events, with_sign(found.offset - as_written, 6), general(found.uncertainty, 2), other.path,
+                  with_sign(1e6 * found.drift, 1), fixed(1e6 * found.drift_uncertainty, 1)));
   run.clock_offset_std_error = found.uncertainty;
   return found.offset;
 }

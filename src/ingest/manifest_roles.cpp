@@ -9,6 +9,7 @@
 #include "limits.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "tribofit/output/digits.hpp"
 
 namespace tribofit {
 
@@ -43,7 +44,7 @@ double condition_in_cell(const std::string& text, Role role, const std::string& 
   }
   if (!(value > 0) || (role == Role::radius && value > kLargestRadius)) {
     throw InputError(fmt::format("'{}' {}", text,
-                                 value > 0 ? fmt::format("would be more than {:g} m", kLargestRadius)
+                                 value > 0 ? fmt::format("would be more than {} m", general(kLargestRadius))
                                            : std::string("is not greater than zero")),
                      fmt::format("give {} such as {}", with_article(to_string(quantity)), example_of(quantity)));
   }

@@ -9,6 +9,7 @@
 
 #include "limits.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/output/digits.hpp"
 
 namespace tribofit {
 namespace {
@@ -59,8 +60,8 @@ void refuse_beyond_memory(double rows, std::size_t columns, const std::string& p
   if (bytes < static_cast<double>(kMemoryNotAsked)) return;
   const auto available = static_cast<double>(available_memory());
   if (bytes <= available) return;
-  throw InputError(fmt::format("holds about {:.2g} million rows: they take {:.3g} GB of memory, and {:.3g} GB are free",
-                               1e-6 * rows, 1e-9 * bytes, 1e-9 * available),
+  throw InputError(fmt::format("holds about {} million rows: they take {} GB of memory, and {} GB are free",
+                               general(1e-6 * rows, 2), general(1e-9 * bytes, 3), general(1e-9 * available, 3)),
                    "cut the file into parts, keep every other row, or use a machine with more memory", {path, 0, ""});
 }
 

@@ -20,6 +20,7 @@
 #include "stated_conditions.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
@@ -334,7 +335,7 @@ void continue_recording(FileRecord& run, FileRecord next, std::size_t number) {
   const double shift = run[Channel::time].back() + (goes_on ? gap : interval);
   const std::string continued = file_name(next.path);
   run.notes.push_back(run.is_points() ? continued + " adds points"
-                      : goes_on       ? fmt::format("{} continues the run after {:.6g} s", file_name(next.path), gap)
+                      : goes_on ? fmt::format("{} continues the run after {} s", file_name(next.path), general(gap, 6))
                                 : fmt::format("{} continues the run; its clock restarts and was joined without a pause",
                                               file_name(next.path)));
   for (double& t : next[Channel::time]) t += shift;

@@ -16,6 +16,7 @@
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "tribofit/output/digits.hpp"
 
 namespace tribofit {
 namespace {
@@ -323,7 +324,7 @@ std::string frequency_text(double hertz, int digits) {
   const bool is_high = hertz >= 1000;
   const double decade = std::pow(10.0, std::floor(std::log10(std::max(hertz, 1e-300))) + 1 - digits);
   const double rounded = decade > 1 ? std::round(hertz / decade) * decade : hertz;  // never "1.2e+04"
-  return fmt::format("{:.{}g} {}", is_high ? rounded / 1000 : rounded, std::max(digits, 3), is_high ? "kHz" : "Hz");
+  return general(is_high ? rounded / 1000 : rounded, std::max(digits, 3)) + (is_high ? " kHz" : " Hz");
 }
 
 std::string_view to_string(Quantity quantity) {

@@ -219,15 +219,8 @@ Motion motion_of_load_point(Trace trace) {
     trace.kind = RecordKind::slide_hold_slide;
   require_channels(trace);
   take_kinds(trace, {}, motion);
-  motion.time = std::move(trace.time);
-  motion.friction = std::move(trace.friction);
-  motion.relative_velocity = std::move(trace.velocity);
-  motion.load = std::move(trace.load);
-  motion.temperature = std::move(trace.temperature);
-  motion.conditions = trace.conditions;
+  take_channels(trace, motion);
   motion.normal_stress = trace.normal_stress;
-  motion.steps = std::move(trace.steps);
-  if (motion.steps.empty()) motion.steps = {{0, motion.size(), "", motion.conditions}};
   return motion;
 }
 

@@ -76,6 +76,18 @@ inline std::vector<Step> steps_within(const std::vector<Step>& steps, std::size_
   return kept;
 }
 
+/// What was recorded, of a trace with v_r that no stage changes any more; the record is one step where it has none.
+inline void take_channels(Trace& trace, Motion& motion) {
+  motion.time = std::move(trace.time);
+  motion.friction = std::move(trace.friction);
+  motion.relative_velocity = std::move(trace.velocity);
+  motion.load = std::move(trace.load);
+  motion.temperature = std::move(trace.temperature);
+  motion.conditions = trace.conditions;
+  motion.steps = std::move(trace.steps);
+  if (motion.steps.empty()) motion.steps = {{0, motion.size(), "", motion.conditions}};
+}
+
 /// v_r in the place of v_b.
 inline void make_relative(std::vector<double>& velocity, const Disc& disc, int threads) {
   run_over_parts(velocity.size(), threads, [&](std::size_t begin, std::size_t end) {

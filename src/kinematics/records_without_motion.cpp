@@ -84,13 +84,8 @@ Motion motion_of_points(Trace trace, const Instruments& instruments, const Motio
   motion.step = 1;
   take_kinds(trace, options.stick, motion);
   correct_declared(trace, without_delays(instruments), motion.step, motion.notes);
-  motion.time = std::move(trace.time);
-  motion.friction = std::move(trace.friction);
-  motion.relative_velocity = std::move(trace.velocity);
   motion.friction_std_error = std::move(trace.friction_std_error);
-  motion.load = std::move(trace.load);
-  motion.temperature = std::move(trace.temperature);
-  motion.conditions = trace.conditions;
+  take_channels(trace, motion);
   motion.conditions.speed = {};
   motion.steps = {{0, motion.size(), "", motion.conditions}};
   settle_signs(motion);
@@ -108,14 +103,7 @@ Motion motion_of_force(Trace trace) {
   take_kinds(trace, {}, motion);
   const std::size_t lone = remove_lone_samples(trace.friction);
   if (lone > 0) motion.notes.push_back(fmt::format("{} lone samples were replaced by their neighbours", lone));
-  motion.time = std::move(trace.time);
-  motion.friction = std::move(trace.friction);
-  motion.relative_velocity = std::move(trace.velocity);
-  motion.load = std::move(trace.load);
-  motion.temperature = std::move(trace.temperature);
-  motion.conditions = trace.conditions;
-  motion.steps = std::move(trace.steps);
-  if (motion.steps.empty()) motion.steps = {{0, motion.size(), "", motion.conditions}};
+  take_channels(trace, motion);
   return motion;
 }
 

@@ -15,6 +15,7 @@
 #include "tribofit/friction/evaluate.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
+#include "tribofit/output/digits.hpp"
 
 namespace tribofit {
 
@@ -23,7 +24,7 @@ namespace {
 void check(const Sensors& sensors) {
   const auto not_negative = [](double value, const char* name, const char* unit = "") {
     if (std::isfinite(value) && value >= 0) return;
-    throw InputError(fmt::format("the {} is negative: {:g}{}", name, value, unit), "give zero (absent) or more");
+    throw InputError(fmt::format("the {} is negative: {}{}", name, general(value), unit), "give zero (absent) or more");
   };
   not_negative(sensors.mass_below, "mass below the force sensor", " kg");
   not_negative(sensors.force_bandwidth, "bandwidth of the force sensor", " Hz");

@@ -10,6 +10,7 @@
 #include "limits.hpp"
 #include "simulation.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/output/digits.hpp"
 
 // Slip: steps with error control that end where v_r is zero; and the slips of a law that acts in stick.
 
@@ -32,11 +33,12 @@ void Simulation::count_step() {
   const double periods = setup_.natural_frequency / (2 * std::numbers::pi) * (time_ + options_.settle);
   if (static_cast<double>(++steps_) < std::min(kMostSteps, kFirstSteps + kStepsAPeriod * periods)) return;
   const Rig& rig = setup_.rig;
-  throw InputError(fmt::format("the simulation needs too many steps: {:g} of them lead from t = {:.6g} to {:.6g} s of "
-                               "{:g} s, with a mass of {:g} kg, a stiffness of {:g} N/m, a damping of {:g} N s/m, a "
-                               "load of {:g} N and {:g} m/s under the block",
-                               static_cast<double>(steps_), -options_.settle, time_, options_.duration, rig.mass,
-                               rig.stiffness, rig.damping, setup_.load(time_), setup_.disc_velocity(time_)),
+  throw InputError(fmt::format("the simulation needs too many steps: {} of them lead from t = {} to {} s of "
+                               "{} s, with a mass of {} kg, a stiffness of {} N/m, a damping of {} N s/m, a "
+                               "load of {} N and {} m/s under the block",
+                               general(static_cast<double>(steps_)), general(-options_.settle, 6), general(time_, 6),
+                               general(options_.duration), general(rig.mass), general(rig.stiffness),
+                               general(rig.damping), general(setup_.load(time_)), general(setup_.disc_velocity(time_))),
                    "check that these fit together, and that the effects have plausible parameters");
 }
 
@@ -61,7 +63,7 @@ bool Simulation::try_step(double h) {
   }
   const bool advances = step_ > 1e-15 * std::max(1.0, std::abs(time_));
   if (!accepted && !advances) {
-    throw InputError(fmt::format("the simulation does not get beyond t = {:.6g} s", time_),
+    throw InputError(fmt::format("the simulation does not get beyond t = {} s", general(time_, 6)),
                      "check that friction is finite and that its effects have plausible parameters");
   }
   return accepted;

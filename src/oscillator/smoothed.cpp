@@ -15,6 +15,7 @@
 #include "slip_flow.hpp"
 #include "stiff_integrator.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/output/digits.hpp"
 
 namespace tribofit {
 
@@ -168,10 +169,11 @@ std::size_t SmoothedSimulation::most_steps() const {
 
 void SmoothedSimulation::give_up(const std::string& reason) const {
   const double t = integrator_.time();
-  throw InputError(fmt::format("the smoothed law cannot be integrated beyond t = {:.6g} s: {}; v_r = {:.3g} mm/s after "
-                               "{} steps",
-                               t, reason, 1e3 * relative_velocity(t, integrator_.state()), steps_),
-                   "lower the sharpness, or use the law with located events");
+  throw InputError(
+      fmt::format("the smoothed law cannot be integrated beyond t = {} s: {}; v_r = {} mm/s after "
+                  "{} steps",
+                  general(t, 6), reason, general(1e3 * relative_velocity(t, integrator_.state()), 3), steps_),
+      "lower the sharpness, or use the law with located events");
 }
 
 /// Events within the step just made, which began at `begin` in the state `before`.

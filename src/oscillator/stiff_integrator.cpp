@@ -1,4 +1,5 @@
 #include "stiff_integrator.hpp"
+#include "tribofit/output/digits.hpp"
 
 #include <fmt/format.h>
 
@@ -90,7 +91,7 @@ bool StiffIntegrator::step(double until) {
   while (m.controller.try_step(std::pair(rates, derivatives), m.before, reached, m.after, tried) !=
          boost::numeric::odeint::success) {
     if (tried > least) continue;
-    failure_ = fmt::format("the error stays too large down to steps of {:.2g} s", tried);
+    failure_ = fmt::format("the error stays too large down to steps of {} s", general(tried, 2));
     return false;
   }
   m.controller.stepper().prepare_dense_output();

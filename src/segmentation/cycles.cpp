@@ -13,6 +13,7 @@
 #include "phases.hpp"
 #include "spoilt_stretches.hpp"
 #include "statistics/reductions.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -313,7 +314,7 @@ void add_notes(Segmentation& result) {
   const double usual = median(std::move(lengths));
   if (usual < static_cast<double>(segmentation::kShortestSlip)) {
     result.notes.push_back(
-        fmt::format("only {:.3g} sample{} a slip: too few for a curve", usual, usual == 1 ? "" : "s"));
+        fmt::format("only {} sample{} a slip: too few for a curve", general(usual, 3), usual == 1 ? "" : "s"));
   }
   std::size_t complete = 0;
   for (const Cycle& c : cycles) complete += c.stick_complete && c.slip_complete ? 1u : 0u;

@@ -10,6 +10,7 @@
 
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/oscillator/steady_sliding.hpp"
+#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
@@ -29,8 +30,9 @@ void check_axis(const MapRequest& request, const MapAxis& axis) {
       steady_sliding(with_value(request.machine, axis.variable.name, value));
     } catch (const InputError& error) {
       const std::string unit = axis.variable.unit == "1" ? "" : " " + std::string(axis.variable.unit);
-      throw InputError(fmt::format("{} = {:g}{}: {}", axis.variable.name, value / axis.variable.si, unit, error.what()),
-                       "let the axis begin and end where there is a machine");
+      throw InputError(
+          fmt::format("{} = {}{}: {}", axis.variable.name, general(value / axis.variable.si), unit, error.what()),
+          "let the axis begin and end where there is a machine");
     }
   }
 }

@@ -16,6 +16,7 @@
 #include "ingest/numbers.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "tribofit/output/digits.hpp"
 
 namespace tribofit {
 namespace {
@@ -207,7 +208,7 @@ class File {
     if (kind.format != 2) refuse(fmt::format("numbers of format {}, not IEEE 754", kind.format));
     if (f.count > bytes_.size()) refuse(fmt::format("{} values in a file of {} bytes", f.count, bytes_.size()));
     if (f.even && !(f.interval > 0 && std::isfinite(f.interval) && std::isfinite(f.start))) {
-      refuse(fmt::format("an increment of {:g}", f.interval));
+      refuse(fmt::format("an increment of {}", general(f.interval)));
     }
     std::vector<double> abscissa, ordinate;
     kind.binary ? binary_values(kind, f, abscissa, ordinate) : text_values(f, abscissa, ordinate);
@@ -299,10 +300,10 @@ class File {
       table_.rows[at->second].interval = f.interval * factor;
       table_.rows[at->second].start = f.start * factor;
     } else {
-      table_.notes.push_back(
-          fmt::format("'{}' states an increment of {:g} {}: state the sampling rate with --rate", f.title, f.interval,
-                      stated ? fmt::format("in '{}', which is no known unit of time", f.abscissa_unit)
-                             : "of an unknown abscissa without a unit"));
+      table_.notes.push_back(fmt::format(
+          "'{}' states an increment of {} {}: state the sampling rate with --rate", f.title, general(f.interval),
+          stated ? fmt::format("in '{}', which is no known unit of time", f.abscissa_unit)
+                 : "of an unknown abscissa without a unit"));
     }
     return at->second;
   }
