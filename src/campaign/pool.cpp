@@ -52,7 +52,7 @@ PooledGroup::OfFit pool_fits(std::span<const RunResult> runs, const std::vector<
     if (value.runs != 1) continue;
     for (const std::size_t r : members) {  // the interval of the one run, with its own degrees of freedom
       const ResultFit* fit = runs[r].fit(like.law, like.protocol);
-      if (fit == nullptr || p >= fit->parameters.size() || fit->parameters[p].value != value.value) continue;
+      if (fit == nullptr || p >= fit->parameters.size() || fit->parameters[p].value != value.mean) continue;
       value.lower95 = fit->parameters[p].lower95;
       value.upper95 = fit->parameters[p].upper95;
     }

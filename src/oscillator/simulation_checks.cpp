@@ -11,20 +11,11 @@
 
 #include "slip_flow.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/output/digits.hpp"
 
 namespace tribofit {
 
 namespace {
-
-/// "mu_s = 0.5, mu_k = 0.3, alpha = 0.05 s/mm", from values in the units of the parameters.
-std::string list_of(const std::vector<Parameter>& parameters, const std::function<double(std::size_t)>& value) {
-  std::string text;
-  for (std::size_t k = 0; k < parameters.size(); ++k) {
-    text += (text.empty() ? "" : ", ") + fmt::format("{} = {:g}", parameters[k].name, value(k));
-    if (parameters[k].unit != "1") text += " " + parameters[k].unit;
-  }
-  return text;
-}
 
 void check_law(const Law& law, std::span<const double> p) {
   if (is_possible(law, p)) return;
@@ -52,20 +43,29 @@ void check_friction(const FrictionModel& model, std::span<const double> p) {
       const Parameter& q = info.parameters[i];
       require(q.lower > 0 ? value > 0 : q.lower < 0 || value >= 0,
               fmt::format("{} of the effect '{}' is {}", q.name, info.key,
-                          value < 0 ? fmt::format("negative: {:g}", value / q.si) : "zero"),
+                          value < 0 ? "negative: " + general(value / q.si) : "zero"),
               "`identify effects " + info.key + "` gives its plausible range");
     }
   }
 }
 
 void require_positive(double x, const char* unit, const char* what, const char* advice) {
-  require(std::isfinite(x) && x > 0, fmt::format("{} is not positive: {:g}{}", what, x, unit), advice);
+  require(std::isfinite(x) && x > 0, fmt::format("{} is not positive: {}{}", what, general(x), unit), advice);
 }
 void require_not_negative(double x, const char* unit, const char* what, const char* advice) {
-  require(std::isfinite(x) && x >= 0, fmt::format("{} is negative: {:g}{}", what, x, unit), advice);
+  require(std::isfinite(x) && x >= 0, fmt::format("{} is negative: {}{}", what, general(x), unit), advice);
 }
 
 }  // namespace
+
+std::string list_of(const std::vector<Parameter>& parameters, const std::function<double(std::size_t)>& value) {
+  std::string text;
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    text += (text.empty() ? "" : ", ") + parameters[k].name + " = " + general(value(k));
+    if (parameters[k].unit != "1") text += " " + parameters[k].unit;
+  }
+  return text;
+}
 
 void require(bool good, const std::string& problem, const std::string& advice) {
   if (!good) throw InputError(problem, advice);

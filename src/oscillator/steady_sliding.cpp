@@ -1,7 +1,5 @@
 #include "tribofit/oscillator/steady_sliding.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +8,7 @@
 #include "statistics/linear_algebra.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
+#include "tribofit/output/digits.hpp"
 
 namespace tribofit {
 
@@ -30,7 +29,7 @@ SteadySliding steady_sliding(const Machine& machine) {
 
   SteadySliding out;
   out.friction = flow.friction(0, y);
-  require(std::isfinite(out.friction), fmt::format("friction at {:g} mm/s is not a finite number", 1e3 * disc),
+  require(std::isfinite(out.friction), "friction at " + general(1e3 * disc) + " mm/s is not a finite number",
           "check the formulas and the parameters of the effects");
   out.displacement = setup.load(0) * out.friction / machine.rig.stiffness;
   y[0] = setup.natural_frequency * out.displacement;

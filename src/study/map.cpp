@@ -1,16 +1,15 @@
 #include "tribofit/study/map.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <mutex>
 #include <string>
 
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/oscillator/steady_sliding.hpp"
-#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/output/digits.hpp"
 
 namespace tribofit {
 
@@ -29,7 +28,7 @@ void check_axis(const MapRequest& request, const MapAxis& axis) {
       steady_sliding(with_value(request.machine, axis.variable.name, value));
     } catch (const InputError& error) {
       const std::string unit = axis.variable.unit == "1" ? "" : " " + std::string(axis.variable.unit);
-      throw InputError(fmt::format("{} = {:g}{}: {}", axis.variable.name, value / axis.variable.si, unit, error.what()),
+      throw InputError(axis.variable.name + " = " + general(value / axis.variable.si) + unit + ": " + error.what(),
                        "let the axis begin and end where there is a machine");
     }
   }

@@ -9,8 +9,9 @@
 #include <optional>
 
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/oscillator/smoothed.hpp"
 #include "tribofit/oscillator/steady_sliding.hpp"
+#include "tribofit/output/digits.hpp"
+#include "tribofit/study/smoothed.hpp"
 
 namespace tribofit {
 
@@ -148,7 +149,7 @@ void Settling::measure(const SeenCycle& cycle) {
 
 bool Settling::judge_cycles(const std::vector<SeenCycle>& cycles) {
   if (cycles.size() < 3) {
-    out_.seen = fmt::format("{} break-aways in {:.3g} s", cycles.size(), out_.simulated);
+    out_.seen = fmt::format("{} break-aways in {} s", cycles.size(), general(out_.simulated, 3));
     return false;
   }
   const SeenCycle& last = cycles.back();
@@ -176,9 +177,10 @@ bool Settling::judge_cycles(const std::vector<SeenCycle>& cycles) {
   }
   measure(mean);
   out_.seen = fmt::format(
-      "stick-slip that does not repeat itself: over the last {} cycles of {:.3g} s the period goes from {:.6g} to "
-      "{:.6g} s, peak-to-peak from {:.6g} to {:.6g} mm",
-      late.size(), out_.simulated, least.period, most.period, 1e3 * least.peak_to_peak, 1e3 * most.peak_to_peak);
+      "stick-slip that does not repeat itself: over the last {} cycles of {} s the period goes from {} to {} s, "
+      "peak-to-peak from {} to {} mm",
+      late.size(), general(out_.simulated, 3), general(least.period), general(most.period),
+      general(1e3 * least.peak_to_peak), general(1e3 * most.peak_to_peak));
   return false;
 }
 
@@ -204,7 +206,7 @@ bool Settling::judge_swings(const SimulatedMotion& motion, double since) {
   if (swings.size() < 5 || *std::max_element(swings.begin(), swings.end()) < still) {
     // What does not swing creeps to its place, unless it runs away from it.
     if (creeps_to_rest(machine_, length)) return slides();
-    out_.seen = fmt::format("sliding without a stick, {} swings in {:.3g} s", swings.size(), out_.simulated);
+    out_.seen = fmt::format("sliding without a stick, {} swings in {} s", swings.size(), general(out_.simulated, 3));
     return false;
   }
   const std::vector<TurningPoint>& turns = motion.turning_points;
@@ -226,9 +228,9 @@ bool Settling::judge_swings(const SimulatedMotion& motion, double since) {
     out_.peak_speed = fastest_of_vibration(end);
     return true;
   }
-  out_.seen = fmt::format(
-      "vibration without a stick whose peak-to-peak of {:.4g} mm still {} by {:.2g} % a cycle after {:.3g} s",
-      1e3 * last, change < 0 ? "falls" : "grows", 1e2 * std::abs(change), out_.simulated);
+  out_.seen = fmt::format("vibration without a stick whose peak-to-peak of {} mm still {} by {} % a cycle after {} s",
+                          general(1e3 * last, 4), change < 0 ? "falls" : "grows", general(1e2 * std::abs(change), 2),
+                          general(out_.simulated, 3));
   return false;
 }
 
