@@ -16,10 +16,10 @@
 #include "ingest/declared_conditions.hpp"
 #include "segmentation/obstacles.hpp"
 #include "study/fit_machines.hpp"
+#include "tribofit/execution/parallel.hpp"
+#include "tribofit/execution/stop.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/kinematics/clock_offset.hpp"
-#include "tribofit/statistics/parallel.hpp"
-#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit {
 

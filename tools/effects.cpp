@@ -5,8 +5,8 @@
 #include "console.hpp"
 #include "settings.hpp"
 #include "tribofit/friction/effects/all.hpp"
-#include "tribofit/oscillator/fingerprint.hpp"
 #include "tribofit/report/terminal.hpp"
+#include "tribofit/study/fingerprint.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;

@@ -14,9 +14,9 @@
 #include <utility>
 
 #include "ingest/content_hash.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/pipeline.hpp"
-#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 namespace {

@@ -11,7 +11,7 @@ namespace tribofit {
 
 constexpr auto description(const Estimate*) {
   return described("value", &Estimate::value, "std_error", &Estimate::std_error, "ci95", [](const Estimate& estimate) {
-    const Interval ci = interval_of(estimate);
+    const Interval ci = estimate.interval95();
     return interval_json(ci.lower, ci.upper);
   });
 }

@@ -4,7 +4,7 @@
 
 #include "evidence.hpp"
 #include "limits.hpp"
-#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/execution/parallel.hpp"
 
 namespace tribofit::diagnosis {
 

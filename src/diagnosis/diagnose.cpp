@@ -15,8 +15,8 @@
 #include "limits.hpp"
 #include "record_evidence.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/output/digits.hpp"
-#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 

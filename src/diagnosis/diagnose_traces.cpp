@@ -79,8 +79,7 @@ void share_friction_filter(const Instruments& instruments, std::vector<PreparedT
   }
   if (cycles_with == 0) return;
   const bool is_filter = cycles_with >= limits::kMostOfTheError * cycles;
-  const UndoneDistortion shared =
-      is_filter ? UndoneDistortion{sum / cycles_with, std::sqrt(variance) / cycles_with} : UndoneDistortion{};
+  const Estimate shared = is_filter ? Estimate{sum / cycles_with, std::sqrt(variance) / cycles_with} : Estimate{};
   for (PreparedTrace& prepared : traces) {
     const bool sticks = prepared.trace.analysed && prepared.trace.segmentation.kind == MotionKind::stick_slip;
     if (!sticks || prepared.trace.motion.friction_low_pass.any() == is_filter) continue;
@@ -256,7 +255,7 @@ EffectRoles roles_of(const std::vector<Effect>& effects) {
   return roles;
 }
 
-std::optional<UndoneDistortion> shared_friction_filter(const std::vector<Identification>& traces) {
+std::optional<Estimate> shared_friction_filter(const std::vector<Identification>& traces) {
   for (const Identification& trace : traces) {
     if (trace.motion.friction_filter_source != FilterSource::unknown) return trace.motion.friction_low_pass;
   }

@@ -37,7 +37,7 @@ PreparedTrace prepare_to_diagnose(const PrepareTrace& prepare, const IdentifyOpt
 
 /// The low-pass of the force sensor that the traces of a diagnosis were read through (0: none), for others of that
 /// sensor; nothing where none of them shows whether there is one.
-std::optional<UndoneDistortion> shared_friction_filter(const std::vector<Identification>& traces);
+std::optional<Estimate> shared_friction_filter(const std::vector<Identification>& traces);
 
 /// Leaves one of those that hold the same values: a copy of a record is no repeat of it. Returns what was left out.
 std::vector<std::string> exclude_copies(std::vector<PreparedTrace>& traces);

@@ -10,9 +10,9 @@
 #include "conclusions.hpp"
 #include "fit/assessment.hpp"
 #include "limits.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/output/digits.hpp"
-#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit::diagnosis {
 

@@ -7,9 +7,9 @@
 
 #include "fit/spectral_lines.hpp"
 #include "fit/starts.hpp"
+#include "tribofit/execution/stop.hpp"
 #include "tribofit/statistics/distributions.hpp"
 #include "tribofit/statistics/standard_error_of_mean.hpp"
-#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit::diagnosis {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "limits.hpp"
-#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/execution/parallel.hpp"
 
 namespace tribofit::diagnosis {
 

@@ -75,7 +75,7 @@ std::vector<std::string> problems_of(std::span<const Record> records) {
 /// How well the time between the channels is known where a low-pass was undone [s]; 0 where none was. A filter may hold
 /// its input for a sample, which is half of one either way.
 double time_left_by_filters(const Motion& motion) {
-  const UndoneDistortion &v = motion.velocity_low_pass, &mu = motion.friction_low_pass;
+  const Estimate &v = motion.velocity_low_pass, &mu = motion.friction_low_pass;
   return v.any() || mu.any() ? std::hypot(v.std_error, mu.std_error, 0.5 * motion.step) : 0;
 }
 

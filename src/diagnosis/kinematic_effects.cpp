@@ -36,7 +36,7 @@ bool is_of_plateau(const std::string& key) {
 
 constexpr double kNotFitted = std::numeric_limits<double>::quiet_NaN();
 
-FoundBeforeFit found_before_fit(const Effect& effect, const Motion& motion, const FoundValue& load_coupling) {
+FoundBeforeFit found_before_fit(const Effect& effect, const Motion& motion, const Estimate& load_coupling) {
   return std::visit(
       [&]<class E>(const E&) -> FoundBeforeFit {
         if constexpr (requires { E::found_before_fit(motion, load_coupling); }) {
@@ -91,7 +91,7 @@ std::vector<Effect> effects_and_forms() {
 }
 
 /// What was found in the motion and in the load channel, and undone, as effects: those of the motion first.
-std::vector<EffectFinding> motion_findings(const Motion& motion, const FoundValue& load_coupling,
+std::vector<EffectFinding> motion_findings(const Motion& motion, const Estimate& load_coupling,
                                            const Instruments& instruments) {
   std::vector<EffectFinding> out;
   for (const bool kinematic : {true, false}) {
@@ -238,8 +238,7 @@ void remove_load_coupling(Identification& trace) {
 
 void add_motion(std::span<const Record> records, const Estimate& load_coupling, const Instruments& instruments,
                 const std::optional<Fit>& uncorrected, Diagnosis& diagnosis) {
-  const FoundValue coupling = {load_coupling.value, load_coupling.std_error};
-  const std::vector<EffectFinding> found = motion_findings(*records[0].motion, coupling, instruments);
+  const std::vector<EffectFinding> found = motion_findings(*records[0].motion, load_coupling, instruments);
   diagnosis.effects = merged(found, records, diagnosis.effects);
   if (found.empty()) return;
   if (diagnosis.verdict == Verdict::sufficient) diagnosis.verdict = Verdict::effect_found;

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "limits.hpp"
-#include "tribofit/statistics/parallel.hpp"
-#include "tribofit/statistics/stop.hpp"
+#include "tribofit/execution/parallel.hpp"
+#include "tribofit/execution/stop.hpp"
 
 namespace tribofit::diagnosis {
 

@@ -7,7 +7,7 @@
 #include "fit/limits.hpp"
 #include "fit/starts.hpp"
 #include "limits.hpp"
-#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/execution/parallel.hpp"
 
 namespace tribofit::diagnosis {
 

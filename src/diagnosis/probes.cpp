@@ -12,8 +12,8 @@
 #include "fit/points.hpp"
 #include "fit/spectral_lines.hpp"
 #include "limits.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/friction/evaluate.hpp"
-#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::diagnosis {

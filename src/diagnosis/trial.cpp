@@ -10,9 +10,9 @@
 
 #include "limits.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
+#include "tribofit/execution/stop.hpp"
 #include "tribofit/fit/solver.hpp"
 #include "tribofit/friction/evaluate.hpp"
-#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit::diagnosis {
 

@@ -7,8 +7,8 @@
 
 #include "fit_steps.hpp"
 #include "limits.hpp"
-#include "tribofit/statistics/change_point.hpp"
-#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/execution/parallel.hpp"
+#include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit {
 
@@ -28,14 +28,12 @@ class ChangeInTime {
     });
     if (!look_before_and_after(observations)) return;
     const std::vector<double> before = residuals.squares_of(before_), after = residuals.squares_of(after_);
-    std::vector<double> sorted_before, sorted_after;
+    squares = {std::accumulate(after.begin(), after.end(), 0.0)};
     for (const std::size_t k : order_) {
       begin.push_back(observations.time[slips[k].begin]);
       end.push_back(observations.time[slips[k].end - 1]);
-      sorted_before.push_back(before[k]);
-      sorted_after.push_back(after[k]);
+      squares.push_back(squares.back() + before[k] - after[k]);
     }
-    squares = squares_by_change(sorted_before, sorted_after);
   }
 
   std::vector<double> begin, end;  ///< of each slip, in order of time [s]; empty where the model is not finite

@@ -5,10 +5,10 @@
 
 #include "dual.hpp"
 #include "errors.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/fit/fit.hpp"
 #include "tribofit/friction/evaluate.hpp"
 #include "tribofit/statistics/distributions.hpp"
-#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit {
@@ -25,7 +25,7 @@ Comparison compare_held_out(const Fit& first, const Fit& second) {
     difference[c] = (first.cycle_squares[c] - second.cycle_squares[c]) * static_cast<double>(n) / counts;
     comparison.difference += difference[c] / static_cast<double>(n);
   }
-  const MeanError error = standard_error_of_mean(difference);
+  const Estimate error = standard_error_of_mean(difference);
   comparison.std_error = error.std_error;
   if (error.std_error > 0) {
     comparison.p_value = t_p_value(comparison.difference / error.std_error, error.degrees_of_freedom);

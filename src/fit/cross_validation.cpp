@@ -5,7 +5,7 @@
 
 #include "fit_steps.hpp"
 #include "limits.hpp"
-#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/execution/parallel.hpp"
 
 namespace tribofit {
 

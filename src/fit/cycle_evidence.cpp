@@ -268,7 +268,7 @@ Spread spread_of(const MatrixXd& influence, const SlowLevels& slow) {
   Spread spread{VectorXd(n), VectorXd(n), {}};
   for (Index k = 0; k < n; ++k) {
     const VectorXd column = influence.col(k);
-    const MeanError error = standard_error_of_mean({column.data(), static_cast<std::size_t>(column.size())});
+    const Estimate error = standard_error_of_mean({column.data(), static_cast<std::size_t>(column.size())});
     spread.std_error(k) = error.std_error;
     if (!slow.noise.covariance.empty())
       spread.std_error(k) = std::max(error.std_error, beside_slow_noise(column, slow.noise, slow.influence.col(k)));

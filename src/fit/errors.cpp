@@ -6,9 +6,9 @@
 
 #include "assessment.hpp"
 #include "limits.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/friction/evaluate.hpp"
 #include "tribofit/segmentation/strokes.hpp"
-#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 

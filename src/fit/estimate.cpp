@@ -12,7 +12,7 @@
 #include "limits.hpp"
 #include "observing.hpp"
 #include "spectral_lines.hpp"
-#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/execution/parallel.hpp"
 
 namespace tribofit {
 

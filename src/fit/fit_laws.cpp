@@ -8,9 +8,9 @@
 #include "limits.hpp"
 #include "observing.hpp"
 #include "requested_effects.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/fit/observations.hpp"
 #include "tribofit/friction/effects/all.hpp"
-#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 

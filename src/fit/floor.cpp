@@ -12,12 +12,12 @@
 #include "points.hpp"
 #include "spectral_lines.hpp"
 #include "statistics/linear_algebra.hpp"
+#include "tribofit/execution/parallel.hpp"
+#include "tribofit/execution/stop.hpp"
 #include "tribofit/fit/fit.hpp"
-#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/slow_noise.hpp"
-#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit {
 

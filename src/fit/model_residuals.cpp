@@ -9,8 +9,8 @@
 #include "dual.hpp"
 #include "statistics/linear_algebra.hpp"
 #include "stick_evidence.hpp"
+#include "tribofit/execution/stop.hpp"
 #include "tribofit/friction/creep.hpp"
-#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit {
 

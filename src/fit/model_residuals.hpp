@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "dual.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/fit/fit.hpp"
 #include "tribofit/fit/solver.hpp"
-#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 

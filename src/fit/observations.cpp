@@ -9,9 +9,9 @@
 #include "errors.hpp"
 #include "observing.hpp"
 #include "points.hpp"
+#include "tribofit/execution/stop.hpp"
 #include "tribofit/segmentation/strokes.hpp"
 #include "tribofit/statistics/quantiles.hpp"
-#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit {
 

@@ -10,8 +10,8 @@
 #include "limits.hpp"
 #include "rate_state_steps.hpp"
 #include "statistics/linear_algebra.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/statistics/distributions.hpp"
-#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/standard_error_of_mean.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "dual.hpp"
 #include "oscillator/rate_state_slider.hpp"
-#include "tribofit/statistics/stop.hpp"
+#include "tribofit/execution/stop.hpp"
 
 namespace tribofit::fit {
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "limits.hpp"
+#include "tribofit/execution/stop.hpp"
 #include "tribofit/statistics/quantiles.hpp"
-#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit::fit {
 

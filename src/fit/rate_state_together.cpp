@@ -9,9 +9,9 @@
 
 #include "limits.hpp"
 #include "rate_state_steps.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/distributions.hpp"
-#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit::fit {
 namespace {

@@ -85,7 +85,7 @@ void compare_stick_slope(const Motion& motion, const Segmentation& segmentation,
     if (b == balance->spans.size()) break;
     if (balance->spans[b].begin <= middles[k]) differences.push_back(influence(Eigen::Index(b)) - slopes[k]);
   }
-  const MeanError error = standard_error_of_mean(differences);
+  const Estimate error = standard_error_of_mean(differences);
   if (error.std_error > 0) fit.stick_slope_difference = (fit.stiffness.value - mean.value) / error.std_error;
 }
 
@@ -104,7 +104,7 @@ void from_stick_alone(const Motion& motion, const NormalForce& load, RigFit& fit
     influence[i * kPieces / motion.size()] += kPieces * (way - line->middle) * residual / line->squares;
     way += motion.step * motion.disc_velocity_at(i);
   }
-  const MeanError error = standard_error_of_mean(influence);
+  const Estimate error = standard_error_of_mean(influence);
   fit.stick_slope_stiffness = rig_value(line->slope, error.std_error, error.degrees_of_freedom);
   if (!(std::abs(line->slope) > kClearOfZero * error.std_error)) return;
   fit.stiffness = fit.stick_slope_stiffness;

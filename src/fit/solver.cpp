@@ -12,7 +12,7 @@
 #include <string>
 
 #include "statistics/linear_algebra.hpp"
-#include "tribofit/statistics/stop.hpp"
+#include "tribofit/execution/stop.hpp"
 
 namespace tribofit {
 

@@ -10,7 +10,7 @@
 
 #include "limits.hpp"
 #include "starts.hpp"
-#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/spectrum.hpp"
@@ -185,7 +185,7 @@ SpectralLines strongest_lines(const Record& record, const Observations& observat
   const double width = kBesidePeak / length, fine = kFinerThanBin / motion.duration();
   constexpr double kPartsOfPeak = 5;             // a peak is as wide as four such steps
   std::vector<std::pair<double, double>> found;  // strength and frequency
-  for (const double coarse : take_peaks(amplitude_spectrum(series, 1 / rate, threads), lowest, highest)) {
+  for (const double coarse : take_peaks(amplitude_spectrum(series, 1 / rate), lowest, highest)) {
     const auto strongest = [&](double middle, double beside, double step) {
       std::vector<std::pair<double, double>> tried;
       for (double f = middle - beside; f <= middle + beside; f += step) tried.push_back({0, f});

@@ -209,7 +209,7 @@ Estimate gap_beside_creep(const FrictionModel& model, const std::vector<double>&
   out.value = std::numeric_limits<double>::quiet_NaN();
   if (gaps.empty()) return out;
   const auto n = static_cast<double>(gaps.size());
-  const MeanError error = standard_error_of_mean(gaps);
+  const Estimate error = standard_error_of_mean(gaps);
   const double allowed = creep_law(model).inaccuracy * std::abs(creeps) / n;
   out.value = std::copysign(std::max(0.0, std::abs(sum / n) - allowed), sum);
   out.std_error = error.std_error;

@@ -10,11 +10,11 @@
 #include <string_view>
 #include <utility>
 
+#include "tribofit/execution/stop.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
-#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit {
 

@@ -9,10 +9,10 @@
 
 #include "column_names.hpp"
 #include "limits.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/output/digits.hpp"
-#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {

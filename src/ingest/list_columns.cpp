@@ -15,8 +15,8 @@
 #include "reader.hpp"
 #include "recording.hpp"
 #include "statistics/reductions.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 namespace {

@@ -18,10 +18,10 @@
 #include "memory.hpp"
 #include "points.hpp"
 #include "stated_conditions.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/output/digits.hpp"
-#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 namespace {

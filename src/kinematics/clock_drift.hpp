@@ -11,10 +11,10 @@ namespace tribofit::kinematics {
 
 /// Clocks of the two channels that run apart.
 struct ClockDriftEstimate {
-  UndoneDistortion drift;  ///< by which friction falls behind, over time [1]; 0: within its error
-  double at_start = 0;     ///< by how much it is behind at the first sample [samples]
-  std::size_t slips = 0;   ///< that were compared
-  bool is_sharp = false;   ///< friction jumps from one sample to the next
+  Estimate drift;         ///< by which friction falls behind, over time [1]; 0: within its error
+  double at_start = 0;    ///< by how much it is behind at the first sample [samples]
+  std::size_t slips = 0;  ///< that were compared
+  bool is_sharp = false;  ///< friction jumps from one sample to the next
 };
 
 /// From the jumps of friction at re-stick beside the times at which v_r comes to rest: a straight line of their

@@ -8,7 +8,7 @@
 
 #include "limits.hpp"
 #include "smoothing.hpp"
-#include "statistics/local_derivatives.hpp"
+#include "statistics/derivatives.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/quantiles.hpp"

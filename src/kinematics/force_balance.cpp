@@ -1,11 +1,11 @@
 #include "force_balance.hpp"
 
 #include <algorithm>
+#include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <limits>
 
 #include "limits.hpp"
-#include "statistics/golden_section.hpp"
 #include "statistics/reductions.hpp"
 
 namespace tribofit::kinematics {
@@ -78,8 +78,9 @@ double ForceBalance::minimise(const ClockLine& clock, double reach, double step,
   for (double k = -steps; k <= steps; ++k) {
     if (const double c = cost(k * step); c < least) least = c, best = k * step;
   }
-  const int cuts = std::max(0, static_cast<int>(std::ceil(std::log(tolerance / (2 * step)) / std::log(0.618))));
-  return golden_section(cost, best - step, best + step, cuts).at;
+  const int bits = std::max(1, 1 - std::ilogb(tolerance / step));
+  const auto cost_beside = [&](double steps_beside) { return cost(best + step * steps_beside); };
+  return best + step * boost::math::tools::brent_find_minima(cost_beside, -1.0, 1.0, bits).first;
 }
 
 }  // namespace tribofit::kinematics

@@ -142,7 +142,7 @@ HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double>
 
 namespace {
 
-double corner_of(const UndoneDistortion& low_pass) {
+double corner_of(const Estimate& low_pass) {
   return 1 / (2 * std::numbers::pi * low_pass.value);
 }
 

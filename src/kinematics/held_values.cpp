@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "limits.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/ingest/units.hpp"
-#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::kinematics {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "limits.hpp"
+#include "tribofit/statistics/estimate.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -12,12 +13,8 @@ namespace tribofit::kinematics {
 namespace {
 
 // Median and its standard error from the spread of the values.
-struct Centre {
-  double value = 0, std_error = 0;
-};
-
-Centre robust_centre(const std::vector<double>& values) {
-  Centre centre;
+Estimate robust_centre(const std::vector<double>& values) {
+  Estimate centre;
   centre.value = median(values);
   const double deviation = median_absolute_deviation(values, centre.value);
   centre.std_error = 1.2533 * kSigmaPerMad * deviation / std::sqrt(static_cast<double>(values.size()));
@@ -53,7 +50,7 @@ HighPassEstimate estimate_high_pass(const BlockMeans& velocity, const Plateaus& 
   }
   estimate.plateaus = whole.size();
   if (whole.size() < 3) return estimate;
-  const Centre all = robust_centre(whole), a = robust_centre(first), b = robust_centre(second);
+  const Estimate all = robust_centre(whole), a = robust_centre(first), b = robust_centre(second);
   estimate.corner = all.value;
   estimate.std_error = all.std_error;
   estimate.first_half = a.value;

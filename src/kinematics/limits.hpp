@@ -70,8 +70,7 @@ inline constexpr double kBelowFinal = 0.9, kStaysSettled = 0.9, kShortestRunUp =
 inline constexpr std::size_t kFewestBins = 64;
 /// Content over the noise floor: of a bin, and of a third of an octave whose slope is looked at.
 inline constexpr double kContentOverNoise = 2, kSlopeOverNoise = 3;
-/// Power of frequency with which content falls behind a filter: stick-slip has up to two, a sensor's resonance two
-/// more.
+/// Power of frequency with which content falls behind a filter: of stick-slip up to two, of a sensor two more.
 inline constexpr double kSteepFall = 4.5;
 /// End of the noise floor over its beginning, below which a filter is in it.
 inline constexpr double kFilteredEnd = 0.1;
@@ -167,8 +166,7 @@ inline constexpr std::size_t kFewestBalanced = 20;
 inline constexpr double kSearched = 200000, kBeforeSlip = 1, kAfterSlip = 2.5;
 /// Parts of the shared time in which the offset is found by itself, and cycles of one.
 inline constexpr std::size_t kFewestParts = 4, kMostParts = 12, kCyclesOfPart = 2;
-/// How nearly an offset is found: part of a bin, part of a sample; and by what part of one a jump between two samples
-/// of friction is misplaced.
+/// How nearly an offset is found, in bins and in samples; and by what part of a sample a jump of friction is misplaced.
 inline constexpr double kFoundInBin = 1.0 / 8, kFound = 1.0 / 50, kBetweenSamples = 0.03;
 
 /// What the motion may leave of the squares of friction where both files are of one run.
@@ -195,6 +193,8 @@ inline constexpr double kRestickInside = 30;
 inline constexpr std::size_t kRestickSamples = 5, kRestickMost = 40, kRestickSlips = 12, kRestickFew = 4;
 /// Time constants [samples], each so many times the one before; what the first look may leave, over the least.
 inline constexpr double kRestickFirst = 0.15, kRestickNext = 1.35, kRestickRival = 4;
+/// Of a time constant, or of a place between two that were tried, that is searched for: to a ten-thousandth.
+inline constexpr int kBitsOfSearch = 14;
 /// Standard uncertainty of a time constant, over it, for the cubic that stands for v_r before re-stick (off by 2 %
 /// either way in simulated records) and where it is of the tail alone; from when on, how long that is [times it].
 inline constexpr double kRestickModel = 0.01, kDecayModel = 5e-4, kDecayAfter = 0.5, kDecayLasts = 3;

@@ -8,7 +8,7 @@
 #include "limits.hpp"
 #include "recording_faults.hpp"
 #include "statistics/reductions.hpp"
-#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::kinematics {

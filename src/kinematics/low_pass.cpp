@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -10,9 +11,8 @@
 
 #include "limits.hpp"
 #include "resticks.hpp"
-#include "statistics/golden_section.hpp"
 #include "statistics/reductions.hpp"
-#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 #include "tribofit/statistics/standard_error_of_mean.hpp"
 
@@ -102,13 +102,11 @@ Smallest fit(const Restick& restick, const Filter& filter) {
   const double from = restick.at - 3 * std::max(filter.width, 1.0) - 2, to = restick.at + 0.3 * restick.fall + 1.5;
   const double by = std::max(0.5, filter.width / 6);
   for (double at = std::max(from, 3.0); at <= to; at += by) try_at(at);
-  const int cuts = static_cast<int>(std::ceil(std::log(2 * by / 0.02) / std::log(std::numbers::phi)));
-  golden_section(try_at, std::max(best.at - by, 3.0), best.at + by, cuts);
+  const double about = best.at;
+  boost::math::tools::brent_find_minima([&](double beside) { return try_at(about + by * beside); },
+                                        std::max(-1.0, (3 - about) / by), 1.0, kBitsOfSearch);
   return best;
 }
-
-/// Cuts of a search for a time constant between its neighbours in the list of those tried: to a thousandth.
-constexpr int kCuts = 16;
 
 /// What a decay from the first sample on leaves.
 double left_by_decay(const std::vector<Restick>& some, double t) {
@@ -132,7 +130,7 @@ double left_by_decay(const std::vector<Restick>& some) {
     if (const double left = left_by_decay(some, t); left < least) least = left, best = t;
   }
   const auto left = [&](double t) { return left_by_decay(some, t); };
-  return golden_section(left, best / kRestickNext, best * kRestickNext, kCuts).value;
+  return boost::math::tools::brent_find_minima(left, best / kRestickNext, best * kRestickNext, kBitsOfSearch).second;
 }
 
 /// Over re-sticks.
@@ -171,7 +169,7 @@ struct Refined {
 
 Refined refine(const Restick& restick, double about) {
   const auto least = [&](const auto& left) {
-    return golden_section(left, about / kRestickNext, about * kRestickNext, kCuts).at;
+    return boost::math::tools::brent_find_minima(left, about / kRestickNext, about * kRestickNext, kBitsOfSearch).first;
   };
   Refined out{least([&](double t) { return fit(restick, {Response::first_order, t}).squares; }), {}};
   const double from = fit(restick, {Response::first_order, out.by_all}).at + kDecayAfter * about + 1;
@@ -282,7 +280,8 @@ FilterFinding find_filter(const RestickData& at, double from, double shortest = 
   }
   if (sharp.squares > kRestickExplained * best.squares) {
     const auto left = [&](double width) { return usual(some, {filter.kind, width}, at.threads).squares; };
-    filter.width = golden_section(left, filter.width / kRestickNext, filter.width * kRestickNext, kCuts).at;
+    const double lowest = filter.width / kRestickNext, highest = filter.width * kRestickNext;
+    filter.width = boost::math::tools::brent_find_minima(left, lowest, highest, kBitsOfSearch).first;
     best = usual(some, filter, threads);
   }
   double decay = 0;

@@ -16,10 +16,10 @@
 #include "records_without_motion.hpp"
 #include "ripple.hpp"
 #include "spring_slider.hpp"
+#include "tribofit/execution/parallel.hpp"
+#include "tribofit/execution/stop.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/output/digits.hpp"
-#include "tribofit/statistics/parallel.hpp"
-#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit::kinematics {
 

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "plateau_search.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/instruments.hpp"
 #include "tribofit/ingest/trace.hpp"
 #include "tribofit/kinematics/motion.hpp"
-#include "tribofit/statistics/parallel.hpp"
 
 // What becomes of the channels of a trace when they become those of a motion.
 

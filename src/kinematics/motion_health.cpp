@@ -9,10 +9,10 @@
 #include "limits.hpp"
 #include "motion_stages.hpp"
 #include "plateau_ratio.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/kinematics/health.hpp"
 #include "tribofit/output/digits.hpp"
-#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 // The stages of a motion that say what its channels are worth.
@@ -106,7 +106,7 @@ HealthItem MotionStages::check_band() const {
 
 HealthItem MotionStages::check_delay() const {
   HealthItem item = kinematics::check_channel_delay(motion_, plateaus_in_motion(), search_.blocks.length);
-  const UndoneDistortion& drift = motion_.clock_drift;
+  const Estimate& drift = motion_.clock_drift;
   if (!drift.any()) return item;
   item.status = std::max(item.status, HealthItem::Status::warning);
   item.message += fmt::format(

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "limits.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/output/digits.hpp"
-#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 

@@ -51,8 +51,8 @@ void add_zero(const BlockZero& zero, bool speed_was_stated, double compression, 
 
 /// v_meas = v_b (1 - part (v_b/fastest)^2): a gain that falls towards the fastest v_b.
 struct Compression {
-  UndoneDistortion part;  ///< [1]; 0: none of this kind
-  double fastest = 0;     ///< [m/s]
+  Estimate part;       ///< [1]; 0: none of this kind
+  double fastest = 0;  ///< [m/s]
 };
 
 /// What was read as v_meas.

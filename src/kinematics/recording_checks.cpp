@@ -8,9 +8,9 @@
 #include "ingest/limits.hpp"
 #include "limits.hpp"
 #include "saturation.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/kinematics/health.hpp"
 #include "tribofit/output/digits.hpp"
-#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 // What the recorder did: a range that was too small, samples and times that are missing.

@@ -11,7 +11,7 @@
 #include "health_checks.hpp"
 #include "motion_channels.hpp"
 #include "plateau_search.hpp"
-#include "statistics/local_derivatives.hpp"
+#include "statistics/derivatives.hpp"
 #include "tribofit/kinematics/health.hpp"
 
 namespace tribofit::kinematics {

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "limits.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/kinematics/motion.hpp"
 #include "tribofit/output/digits.hpp"
-#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit::kinematics {
 namespace {

@@ -2,15 +2,15 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <vector>
 
 #include "limits.hpp"
-#include "statistics/golden_section.hpp"
 #include "statistics/reductions.hpp"
-#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -169,9 +169,9 @@ FrictionLowPass find_friction_low_pass(std::span<const double> friction, const s
   for (std::size_t k = 0; k < tried.size(); ++k) {
     if (left[k] < least) least = left[k], best = tried[k];
   }
-  constexpr int kCuts = 16;  // to a thousandth
   const auto refined = [&](const auto& squares) {
-    return golden_section(squares, best / kRestickNext, best * kRestickNext, kCuts).at;
+    return boost::math::tools::brent_find_minima(squares, best / kRestickNext, best * kRestickNext, kBitsOfSearch)
+        .first;
   };
   const double tau = refined([&](double t) { return squares_left(tails, t, threads); });
   const Evidence evidence = evidence_of(tails, tau);

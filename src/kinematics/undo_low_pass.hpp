@@ -16,7 +16,7 @@ std::size_t undo_low_pass(std::span<double> velocity, double tau, double step, d
 /// A first-order low-pass of the friction channel.
 struct FrictionLowPass {
   bool is_known = false;  ///< enough re-sticks, and samples after them, show whether there is one
-  UndoneDistortion tau;   ///< time constant [s]; 0: none, or not seen
+  Estimate tau;           ///< time constant [s]; 0: none, or not seen
   double early = 0;       ///< what decays begins before v_r comes to rest by it [samples]
   double fall = 0;        ///< time over which friction falls at re-stick where it does so otherwise [s]; 0: a sample or
                           ///< so, or not seen

@@ -43,6 +43,15 @@ struct Polyline {
   }
 };
 
+void check_steps(const std::vector<double>& times, const std::vector<double>& speeds) {
+  if (times.empty() || times.size() != speeds.size()) {
+    throw InputError("a speed profile needs as many speeds as times, at least one", "give one speed for every time");
+  }
+  if (std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) != times.end()) {
+    throw InputError("the times of a speed profile do not increase", "sort them and remove repeated ones");
+  }
+}
+
 }  // namespace
 
 SpeedProfile constant_speed(double omega) {
@@ -58,12 +67,7 @@ SpeedProfile reversing_speed(double amplitude, double frequency) {
 }
 
 SpeedProfile piecewise_linear_speed(std::vector<double> times, std::vector<double> speeds) {
-  if (times.empty() || times.size() != speeds.size()) {
-    throw InputError("a speed profile needs as many speeds as times, at least one", "give one speed for every time");
-  }
-  if (std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) != times.end()) {
-    throw InputError("the times of a speed profile do not increase", "sort them and remove repeated ones");
-  }
+  check_steps(times, speeds);
   auto line = std::make_shared<Polyline>(Polyline{std::move(times), std::move(speeds), {0}});
   for (std::size_t i = 1; i < line->times.size(); ++i) {
     line->angles.push_back(line->angles[i - 1] +
@@ -101,12 +105,7 @@ SpeedProfile rippled_speed(SpeedProfile base, double amplitude, double order, do
 }
 
 SpeedProfile stepped_speed(std::vector<double> times, std::vector<double> speeds, const std::vector<Pause>& pauses) {
-  if (times.empty() || times.size() != speeds.size()) {
-    throw InputError("a speed profile needs as many speeds as times, at least one", "give one speed for every time");
-  }
-  if (std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) != times.end()) {
-    throw InputError("the times of a speed profile do not increase", "sort them and remove repeated ones");
-  }
+  check_steps(times, speeds);
   const auto wanted = [&](double t) {
     for (const Pause& pause : pauses) {
       if (t >= pause.begin && t < pause.begin + pause.duration) return 0.0;

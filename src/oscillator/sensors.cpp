@@ -12,6 +12,7 @@
 
 #include "normal_stream.hpp"
 #include "statistics/low_pass.hpp"
+#include "statistics/reductions.hpp"
 #include "tribofit/friction/evaluate.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
@@ -66,10 +67,6 @@ Slip slip_of(const SimulatedMotion& motion, std::size_t begin, std::size_t end, 
   return slip;
 }
 
-Slip whole_record(const SimulatedMotion& motion) {
-  return slip_of(motion, 0, motion.size(), motion.relative_velocity);
-}
-
 /// First-order high-pass, exact for straight lines between samples. `drift`: its low-pass part at the first sample.
 void high_pass(std::vector<double>& v, double rate, double corner, double drift) {
   if (v.empty()) return;
@@ -86,8 +83,8 @@ void high_pass(std::vector<double>& v, double rate, double corner, double drift)
 
 /// The gain falls by `part` at the fastest.
 void compress(std::vector<double>& v, double part) {
-  double fastest = 0;
-  for (const double value : v) fastest = std::max(fastest, std::abs(value));
+  const Extremes range = v.empty() ? Extremes{} : extremes(v);
+  const double fastest = std::max(range.high, -range.low);
   for (double& value : v) value *= 1 - part * std::pow(value / fastest, 2);
 }
 
@@ -161,7 +158,7 @@ std::vector<double> true_load(const SimulatedMotion& motion, std::span<const dou
 std::vector<double> sensed_friction(std::vector<double> mu, const SimulatedMotion& motion,
                                     const std::vector<double>& load, const FrictionModel& model,
                                     std::span<const double> p, const Sensors& sensors) {
-  Slip whole = whole_record(motion);
+  Slip whole = slip_of(motion, 0, motion.size(), motion.relative_velocity);
   whole.load = load;
   for_each_effect(model, p.data(),
                   [&]<class E>(const E& effect, const double* q) { sense_record(effect, q, motion, whole, mu); });
@@ -184,12 +181,7 @@ std::vector<double> sensed_velocity(std::vector<double> v, const SimulatedMotion
   if (sensors.velocity_high_pass > 0 && !v.empty()) {
     // In settled stick-slip the displacement comes back to its mean, and the low-pass part follows it: 2 pi f_c (x -
     // mean x).
-    double away = 0;
-    if (motion.settled) {
-      double sum = 0;
-      for (const double x : motion.displacement) sum += x;
-      away = motion.displacement[0] - sum / static_cast<double>(motion.size());
-    }
+    const double away = motion.settled ? motion.displacement[0] - mean_of(motion.displacement) : 0;
     const double corner = sensors.velocity_high_pass;
     high_pass(v, motion.rate, corner, 2 * std::numbers::pi * corner * sensors.velocity_gain * away);
   }
@@ -293,8 +285,8 @@ double floor_rmse(const SimulatedMotion& motion, const Recording& recording, con
             : static_cast<std::size_t>(std::lower_bound(motion.time.begin(), motion.time.end(), event.restick_time) -
                                        motion.time.begin());
     if (begin >= end) continue;
-    std::vector<double> velocity(motion.relative_velocity.begin() + static_cast<std::ptrdiff_t>(begin),
-                                 motion.relative_velocity.begin() + static_cast<std::ptrdiff_t>(end));
+    const std::span<const double> moved = part_of(motion.relative_velocity, begin, end);
+    std::vector<double> velocity(moved.begin(), moved.end());
     if (!recording.velocity_noise.empty()) {
       for (std::size_t i = begin; i < end; ++i) velocity[i - begin] -= recording.velocity_noise[i];
     }

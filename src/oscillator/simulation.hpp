@@ -1,8 +1,8 @@
 #pragma once
 
+#include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 #include <cstddef>
 #include <limits>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -23,13 +23,6 @@ class Simulation {
 
  private:
   static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  struct Stepper;
-  struct DeleteStepper {
-    void operator()(Stepper* stepper) const;
-  };
-  using OwnedStepper = std::unique_ptr<Stepper, DeleteStepper>;
-
-  static OwnedStepper make_stepper();
   void begin_in_slip(int direction);
   void advance(double until);
   void stick(double until);
@@ -67,7 +60,7 @@ class Simulation {
   FrictionDynamics friction_;
   SlipFlow flow_;
   CorrelatedStream scatter_;
-  OwnedStepper stepper_;  ///< Dormand-Prince of Boost.Odeint
+  mutable boost::numeric::odeint::runge_kutta_dopri5<BlockState> stepper_;
   SimulatedMotion motion_;
 
   double time_ = 0;

@@ -17,16 +17,6 @@ namespace tribofit {
 
 namespace {
 
-/// "mu_s = 0.5, mu_k = 0.3, alpha = 0.05 s/mm", from values in the units of the parameters.
-std::string list_of(const std::vector<Parameter>& parameters, const std::function<double(std::size_t)>& value) {
-  std::string text;
-  for (std::size_t k = 0; k < parameters.size(); ++k) {
-    text += (text.empty() ? "" : ", ") + fmt::format("{} = {}", parameters[k].name, general(value(k)));
-    if (parameters[k].unit != "1") text += " " + parameters[k].unit;
-  }
-  return text;
-}
-
 void check_law(const Law& law, std::span<const double> p) {
   if (is_possible(law, p)) return;
   const std::vector<Parameter> parameters = describe(law).parameters;
@@ -53,7 +43,7 @@ void check_friction(const FrictionModel& model, std::span<const double> p) {
       const Parameter& q = info.parameters[i];
       require(q.lower > 0 ? value > 0 : q.lower < 0 || value >= 0,
               fmt::format("{} of the effect '{}' is {}", q.name, info.key,
-                          value < 0 ? fmt::format("negative: {}", general(value / q.si)) : "zero"),
+                          value < 0 ? "negative: " + general(value / q.si) : "zero"),
               "`identify effects " + info.key + "` gives its plausible range");
     }
   }
@@ -67,6 +57,15 @@ void require_not_negative(double x, const char* unit, const char* what, const ch
 }
 
 }  // namespace
+
+std::string list_of(const std::vector<Parameter>& parameters, const std::function<double(std::size_t)>& value) {
+  std::string text;
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    text += (text.empty() ? "" : ", ") + parameters[k].name + " = " + general(value(k));
+    if (parameters[k].unit != "1") text += " " + parameters[k].unit;
+  }
+  return text;
+}
 
 void require(bool good, const std::string& problem, const std::string& advice) {
   if (!good) throw InputError(problem, advice);

@@ -1,12 +1,17 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "tribofit/oscillator/simulate.hpp"
 
 namespace tribofit {
+
+/// "mu_s = 0.5, mu_k = 0.3, alpha = 0.05 s/mm", from values in the units of the parameters.
+std::string list_of(const std::vector<Parameter>& parameters, const std::function<double(std::size_t)>& value);
 
 /// Throws InputError unless `good`.
 void require(bool good, const std::string& problem, const std::string& advice);

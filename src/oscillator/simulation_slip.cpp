@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -16,37 +15,26 @@
 
 namespace tribofit {
 
-struct Simulation::Stepper {
-  boost::numeric::odeint::runge_kutta_dopri5<BlockState> method;
-};
-
-Simulation::OwnedStepper Simulation::make_stepper() {
-  return OwnedStepper(new Stepper);
-}
-
-void Simulation::DeleteStepper::operator()(Stepper* stepper) const {
-  delete stepper;
-}
-
 /// Refuses what would take for ever.
 void Simulation::count_step() {
   const double periods = setup_.natural_frequency / (2 * std::numbers::pi) * (time_ + options_.settle);
   if (static_cast<double>(++steps_) < std::min(kMostSteps, kFirstSteps + kStepsAPeriod * periods)) return;
   const Rig& rig = setup_.rig;
-  throw InputError(fmt::format("the simulation needs too many steps: {} of them lead from t = {} to {} s of "
-                               "{} s, with a mass of {} kg, a stiffness of {} N/m, a damping of {} N s/m, a "
-                               "load of {} N and {} m/s under the block",
-                               general(static_cast<double>(steps_)), general(-options_.settle, 6), general(time_, 6),
-                               general(options_.duration), general(rig.mass), general(rig.stiffness),
-                               general(rig.damping), general(setup_.load(time_)), general(setup_.disc_velocity(time_))),
-                   "check that these fit together, and that the effects have plausible parameters");
+  throw InputError(
+      fmt::format("the simulation needs too many steps: {} of them lead from t = {} to {} s of {} s, with a "
+                  "mass of {} kg, a stiffness of {} N/m, a damping of {} N s/m, a load of {} N and {} m/s "
+                  "under the block",
+                  general(static_cast<double>(steps_)), general(-options_.settle), general(time_),
+                  general(options_.duration), general(rig.mass), general(rig.stiffness), general(rig.damping),
+                  general(setup_.load(time_)), general(setup_.disc_velocity(time_))),
+      "check that these fit together, and that the effects have plausible parameters");
 }
 
 /// One step of length h from state_; false (and a shorter step_) when its error is too large.
 bool Simulation::try_step(double h) {
   count_step();
   BlockState error;
-  stepper_->method.do_step(std::cref(flow_), state_, derivative_, time_, next_state_, next_derivative_, h, error);
+  stepper_.do_step(std::cref(flow_), state_, derivative_, time_, next_state_, next_derivative_, h, error);
   scaled_error_ = 0;
   for (std::size_t k = 0; k < 2 + friction_.state_count(); ++k) {
     const double size = std::max(std::abs(state_[k]), std::abs(next_state_[k]));
@@ -63,7 +51,7 @@ bool Simulation::try_step(double h) {
   }
   const bool advances = step_ > 1e-15 * std::max(1.0, std::abs(time_));
   if (!accepted && !advances) {
-    throw InputError(fmt::format("the simulation does not get beyond t = {} s", general(time_, 6)),
+    throw InputError("the simulation does not get beyond t = " + general(time_) + " s",
                      "check that friction is finite and that its effects have plausible parameters");
   }
   return accepted;
@@ -84,7 +72,7 @@ double Simulation::land_on_zero_speed(double h) {
     if (std::abs(next - h) <= 1e-16 * std::abs(time_) + 1e-14 * h) break;
     h = next;
     BlockState error;
-    stepper_->method.do_step(std::cref(flow_), state_, derivative_, time_, next_state_, next_derivative_, h, error);
+    stepper_.do_step(std::cref(flow_), state_, derivative_, time_, next_state_, next_derivative_, h, error);
   }
   return h;
 }
@@ -172,7 +160,7 @@ void Simulation::end_slip() {
 /// State within the step of length h just made, by its fourth-order interpolant.
 BlockState Simulation::dense(double t, double h) const {
   BlockState y{};
-  stepper_->method.calc_state(t, y, state_, derivative_, time_, next_state_, next_derivative_, time_ + h);
+  stepper_.calc_state(t, y, state_, derivative_, time_, next_state_, next_derivative_, time_ + h);
   return y;
 }
 

@@ -1,7 +1,5 @@
 #include "tribofit/oscillator/steady_sliding.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -31,7 +29,7 @@ SteadySliding steady_sliding(const Machine& machine) {
 
   SteadySliding out;
   out.friction = flow.friction(0, y);
-  require(std::isfinite(out.friction), fmt::format("friction at {} mm/s is not a finite number", general(1e3 * disc)),
+  require(std::isfinite(out.friction), "friction at " + general(1e3 * disc) + " mm/s is not a finite number",
           "check the formulas and the parameters of the effects");
   out.displacement = setup.load(0) * out.friction / machine.rig.stiffness;
   y[0] = setup.natural_frequency * out.displacement;

@@ -7,8 +7,8 @@
 
 #include "numbers.hpp"
 #include "tribofit/friction/state_evolution.hpp"
-#include "tribofit/oscillator/fingerprint.hpp"
 #include "tribofit/report/terminal.hpp"
+#include "tribofit/study/fingerprint.hpp"
 
 namespace tribofit {
 namespace {

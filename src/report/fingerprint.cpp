@@ -1,4 +1,4 @@
-#include "tribofit/oscillator/fingerprint.hpp"
+#include "tribofit/study/fingerprint.hpp"
 
 #include <fmt/format.h>
 

@@ -245,7 +245,7 @@ Facts stick_slip_facts(const Identification& r) {
           : "");
   add("slip time", s.slip_time, kMillisecond, "ms");
   const Estimate& branches = s.branch_difference;
-  const Interval interval = interval_of(branches);
+  const Interval interval = branches.interval95();
   if (std::isfinite(branches.std_error) && (interval.lower > 0 || interval.upper < 0)) {
     facts.emplace_back(
         "branches",

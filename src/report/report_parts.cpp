@@ -11,7 +11,7 @@
 
 #include "numbers.hpp"
 #include "report/pictures/text.hpp"
-#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/version.hpp"
 
 namespace tribofit {

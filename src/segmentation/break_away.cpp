@@ -9,7 +9,7 @@
 #include "growth_fit.hpp"
 #include "limits.hpp"
 #include "phases.hpp"
-#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -168,7 +168,7 @@ CommonGrowth fit_common_growth(const std::vector<Window>& windows, double level,
   }
   // What the data leave open (A against lambda where the growth starts at once) is bounded by what is plausible: a
   // factor of three on the rates, a jump of the size of the window.
-  common.variance = std::max(colour.effective(), kRoundingOfLevel * level * level);
+  common.variance = std::max(colour.effective(), kRoundingPart * level * level);
   const Eigen::Vector4d plausible(1.0, 1.0, 1 / (level * level), 1.0);
   const Eigen::Matrix4d information = fit.information / common.variance + Eigen::Matrix4d(plausible.asDiagonal());
   common.covariance = information.inverse();
@@ -202,7 +202,7 @@ bool set_excess(const Motion& m, const std::vector<Rise>& rises, int threads, st
     const Onset& onset = rises[k].onset;
     const StickFriction at_break =
         friction_at(m, {onset.stick_begin, onset.slip}, time_of(m, windows[k], windows[k].t0), onset.direction);
-    levels[k] = std::isfinite(at_break.std_error) ? at_break.value : std::nan("");
+    levels[k] = std::isfinite(at_break.level.std_error) ? at_break.level.value : std::nan("");
   });
   std::copy_if(levels.begin(), levels.end(), std::back_inserter(known), [](double level) { return level == level; });
   if (known.size() < kFewestLevels) return false;
@@ -257,7 +257,7 @@ std::vector<BreakAway> locate_break_aways(const Motion& motion, const std::vecto
   std::vector<BreakAway> result;
   if (onsets.empty()) return result;
   const double noise = motion.velocity_noise;
-  const double level = std::max({kGrowthOverPeak * peak, std::min(kGrowthOverNoise * noise, kGrowthAtMost * peak),
+  const double level = std::max({kGrowthOverPeak * peak, std::min(kClearOfNoise * noise, kGrowthAtMost * peak),
                                  std::min(kinematics::kSlipsOverError * noise, kinematics::kSlipsOverFastest * peak)});
   std::vector<Rise> rises(onsets.size());
   run_tasks(onsets.size(), threads, [&](std::size_t k) { rises[k] = rise_of(motion, onsets[k]); });
@@ -281,7 +281,7 @@ std::vector<BreakAway> locate_break_aways(const Motion& motion, const std::vecto
 double locate_restick(const Motion& motion, SampleRange slip, std::size_t next, int direction, double peak) {
   const double noise = motion.velocity_noise;
   const double low = std::min(kRestickNoise * noise, kRestickAtMost * peak),
-               high = std::max(kEndAtLeast * peak, std::min(kEndOverNoise * noise, kEndAtMost * peak));
+               high = std::max(kEndAtLeast * peak, std::min(kClearOfNoise * noise, kEndAtMost * peak));
   const auto u = [&](std::size_t i) { return direction * above_plateau(motion, i); };
   // First sample on the plateau, or the slowest where the motion turns before it gets there.
   std::size_t last = slip.end;
@@ -308,9 +308,9 @@ namespace {
 /// Where the stretch before `end` begins over which the disc pulls at about the speed it has at the end: a disc that
 /// stood still, or was slower, in the same stick loaded the spring along another line.
 std::size_t begin_of_pull(const Motion& motion, std::size_t begin, std::size_t end) {
-  if (motion.disc_velocity.empty() || end < begin + kShortestPull) return begin;
+  if (motion.disc_velocity.empty() || end < begin + kShowsLine) return begin;
   const double least = kSlowerPull * std::abs(motion.disc_velocity[end - 1]);
-  std::size_t i = end - kShortestPull;
+  std::size_t i = end - kShowsLine;
   while (i > begin && std::abs(motion.disc_velocity[i - 1]) > least) --i;
   return i;
 }
@@ -318,20 +318,18 @@ std::size_t begin_of_pull(const Motion& motion, std::size_t begin, std::size_t e
 }  // namespace
 
 StickFriction friction_at(const Motion& motion, SampleRange stick, double time, int direction) {
-  StickFriction result;
-  std::size_t begin = stick.size() > kHalfOfStick ? stick.begin + stick.size() / 2 : stick.begin;
+  std::size_t begin = stick.size() > 2 * kShowsLine ? stick.begin + stick.size() / 2 : stick.begin;
   std::size_t end = std::min(stick.end, motion.size());
   while (end > begin && motion.time[end - 1] >= time - motion.step) --end;
   // The line goes on from the last good sample; lone spoilt ones before it are on the line already.
   if (end > begin && motion.has_fault(end - 1, SampleFault::friction)) {
     while (end > stick.begin && motion.has_fault(end - 1, SampleFault::friction)) --end;
-    begin = end > stick.begin + kHalfOfStick ? stick.begin + (end - stick.begin) / 2 : stick.begin;
+    begin = end > stick.begin + 2 * kShowsLine ? stick.begin + (end - stick.begin) / 2 : stick.begin;
   }
   begin = begin_of_pull(motion, begin, end);
   if (end < begin + kShortestLine) {
-    result.value = stick.size() > 0 ? direction * motion.friction[stick.end - 1] : std::nan("");
-    result.std_error = result.slope = std::nan("");
-    return result;
+    const double last = stick.size() > 0 ? direction * motion.friction[stick.end - 1] : std::nan("");
+    return {{last, std::nan("")}, std::nan("")};
   }
   const auto friction = std::span<const double>(motion.friction).subspan(begin, end - begin);
   Parabola parabola = fit_parabola(friction);
@@ -342,14 +340,12 @@ StickFriction friction_at(const Motion& motion, SampleRange stick, double time, 
   const double x = (time - motion.time[begin]) / motion.step - parabola.centre();
   double factor = 1 / n + x * x / parabola.line_norm();
   const bool is_curved =
-      n > static_cast<double>(kShortestParabola) &&
+      n > static_cast<double>(kShowsLine) &&
       parabola.curvature * parabola.curvature * curvature_norm > kClearCurvature * kClearCurvature * variance;
   if (is_curved) factor += std::pow(x * x - parabola.shift(), 2) / curvature_norm;
   const double line = parabola.mean + parabola.slope * x;
-  result.value = direction * (is_curved ? parabola.at(x) : line);
-  result.std_error = std::sqrt(variance * factor);
-  result.slope = direction * parabola.slope / motion.step;
-  return result;
+  return {{direction * (is_curved ? parabola.at(x) : line), std::sqrt(variance * factor)},
+          direction * parabola.slope / motion.step};
 }
 
 }  // namespace tribofit::segmentation

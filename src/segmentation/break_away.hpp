@@ -42,7 +42,7 @@ double locate_restick(const Motion& motion, SampleRange slip, std::size_t next, 
 
 /// Friction at break-away by a straight line (a parabola where it is clearly bent) through the later half of the stick.
 struct StickFriction {
-  double value = 0, std_error = 0;
+  Estimate level;
   double slope = 0;  ///< of the straight line [1/s]
 };
 StickFriction friction_at(const Motion& motion, SampleRange stick, double time, int direction);

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "tribofit/segmentation/cycles.hpp"
@@ -10,13 +11,6 @@
 namespace tribofit {
 
 /// What the cycles of a record come to.
-
-struct Interval {
-  double lower = 0, upper = 0;
-};
-
-/// 95 % interval of a mean over cycles.
-Interval interval_of(const Estimate& estimate);
 
 /// Sticks of more than a second, and the longest [s] (NaN where none is complete).
 struct LongSticks {
@@ -50,5 +44,21 @@ std::size_t count_of_cycles(const Segmentation& segmentation);
 
 /// Whether each sample slips. Before the first and after the last cycle only the speed shows it.
 std::vector<bool> slipping_samples(const Motion& motion, const Segmentation& segmentation);
+
+namespace segmentation {
+
+/// Friction [1 or N] of a slip while speeding up less that while slowing down: mean difference over ten bins of speed
+/// between a quarter and three quarters of the peak. NaN where the slip does not show both branches.
+double branch_difference(std::span<const double> velocity, std::span<const double> friction, int direction);
+
+/// Frequency from the periods: one over their mean without those further than three robust standard deviations from the
+/// median (a long stick, a missed slip), which belong to another motion.
+Estimate frequency_of(const std::vector<double>& periods);
+
+/// Mean over slips with its standard error: where there are fewer than thirty, too few to show how neighbours are
+/// correlated, as if they were not.
+Estimate mean_over_slips(std::vector<double> values);
+
+}  // namespace segmentation
 
 }  // namespace tribofit

@@ -8,13 +8,13 @@
 #include <span>
 
 #include "break_away.hpp"
+#include "counts.hpp"
 #include "limits.hpp"
-#include "measures.hpp"
 #include "phases.hpp"
 #include "spoilt_stretches.hpp"
 #include "statistics/reductions.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/output/digits.hpp"
-#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
@@ -210,8 +210,9 @@ void measure_cycle(const Motion& motion, const std::vector<std::size_t>& gaps, s
     const auto stick = velocity.subspan(c.stick.begin, c.stick.size());
     c.plateau_velocity = mean_of(stick);
     const auto at_break = segmentation::friction_at(motion, c.stick, c.break_away_time, c.direction);
-    c.break_away_friction = at_break.value;
-    c.break_away_friction_std_error = std::hypot(at_break.std_error, at_break.slope * c.break_away_time_std_error);
+    c.break_away_friction = at_break.level.value;
+    c.break_away_friction_std_error =
+        std::hypot(at_break.level.std_error, at_break.slope * c.break_away_time_std_error);
     c.stick_slope = at_break.slope;
     if (c.stick_complete && !torn(cycles[k - 1].slip.begin, c.stick.end)) {
       c.stick_time = c.break_away_time - cycles[k - 1].restick_time;
@@ -269,17 +270,9 @@ void slide_throughout(const Motion& motion, double peak, Segmentation& result) {
 
 double rms_block_velocity(const Motion& motion) {
   double squares = 0;
-  const std::size_t n = motion.size();
-  if (motion.disc_velocity.empty()) {
-    const double disc = motion.constant_disc_velocity;
-    squares = sum_of(motion.relative_velocity, [disc](double v) { return (disc - v) * (disc - v); });
-  } else {
-    for (std::size_t i = 0; i < n; ++i) {
-      const double v = motion.disc_velocity[i] - motion.relative_velocity[i];
-      squares += v * v;
-    }
-  }
-  return n > 0 ? std::sqrt(squares / static_cast<double>(n)) : 0;
+  for (std::size_t i = 0; i < motion.size(); ++i)
+    squares += std::pow(motion.disc_velocity_at(i) - motion.relative_velocity[i], 2);
+  return motion.size() > 0 ? std::sqrt(squares / static_cast<double>(motion.size())) : 0;
 }
 
 void summarise(int threads, Segmentation& result) {

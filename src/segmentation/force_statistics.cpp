@@ -5,8 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "counts.hpp"
 #include "limits.hpp"
-#include "measures.hpp"
+#include "statistics/reductions.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -20,32 +21,15 @@ struct Fall {
 };
 
 SlipSpread spread_of(const std::vector<double>& values) {
-  SlipSpread out{segmentation::mean_over_slips(values), std::nan("")};
-  if (values.size() < 2) return out;
-  double squares = 0;
-  for (const double x : values) squares += (x - out.mean.value) * (x - out.mean.value);
-  out.scatter = std::sqrt(squares / static_cast<double>(values.size() - 1));
-  return out;
+  return {segmentation::mean_over_slips(values), standard_deviation(values)};
 }
 
 /// The same of all samples, the error from means of blocks: neighbours hold the same friction.
 SlipSpread spread_of_whole(const std::vector<double>& values) {
   constexpr std::size_t kBlocks = 100;
-  std::vector<double> means;
-  const std::size_t length = std::max<std::size_t>(1, values.size() / kBlocks);
-  SlipSpread out;
-  double sum = 0, squares = 0;
-  for (const double x : values) sum += x;
-  const double mean = sum / static_cast<double>(std::max<std::size_t>(1, values.size()));
-  for (std::size_t begin = 0; begin + length <= values.size(); begin += length) {
-    means.push_back(0);
-    for (std::size_t i = begin; i < begin + length; ++i) means.back() += values[i] / static_cast<double>(length);
-  }
-  for (const double x : values) squares += (x - mean) * (x - mean);
-  out.mean = mean_with_error(std::move(means));
-  out.mean.value = mean;
-  out.scatter = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, values.size() - 1)));
-  return out;
+  Estimate mean = mean_with_error(block_means(values, values.size() / kBlocks, 1).mean);
+  mean.value = mean_of(values);
+  return {mean, standard_deviation(values)};
 }
 
 /// Standard deviation of the noise, from sample to sample.

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "counts.hpp"
 #include "limits.hpp"
-#include "measures.hpp"
 
 namespace tribofit {
 

@@ -23,8 +23,8 @@ inline constexpr double kHasSlip = 0.2;
 /// and the last are kinematics' kSlipsOverError and kSlipsOverFastest) and down to which it lasts. Larger: slips lose
 /// their ends; smaller: noise divides them.
 inline constexpr double kSlipAtMost = 0.15, kStickOverError = 5, kStickAtMost = 0.075, kStickOverPeak = 0.03;
-/// Rounding of omega r - v_b, over the fastest of both: no motion.
-inline constexpr double kRoundingOfVelocity = 1e-12;
+/// Rounding of omega r - v_b, over the fastest of both: no motion. And of a level squared, as a variance.
+inline constexpr double kRoundingPart = 1e-12;
 /// Of the typical peak, from which a slip shows how long slips last; below which one that lasts less than the next
 /// of that time is ringing after a re-stick, or may be where it begins the record. Samples of a spike, where it lasts
 /// less than the last of that time.
@@ -66,9 +66,11 @@ inline constexpr double kAlreadyThere = 0.5;
 /// Samples of a stick that shows its own level, and of a quarter of it; a stick whose growth takes more than such a
 /// part of it creeps.
 inline constexpr std::size_t kShowsLevel = 32, kShortestQuarter = 4;
-/// Of the typical peak, and standard deviations of the noise with the part that they reach at most, up to which growth
-/// is fitted: it is exponential there, and clear of the noise. Of two noises the second is the least.
-inline constexpr double kGrowthOverPeak = 0.01, kGrowthOverNoise = 25, kGrowthAtMost = 0.03;
+/// Standard deviations of the noise from which a velocity is clear of it.
+inline constexpr double kClearOfNoise = 25;
+/// Of the typical peak, and what clear of the noise reaches at most, up to which growth is fitted: it is exponential
+/// there.
+inline constexpr double kGrowthOverPeak = 0.01, kGrowthAtMost = 0.03;
 /// Levels between which the time constant of growth is taken, over one another; time constants before the level that
 /// are fitted, and their fewest and most samples.
 inline constexpr double kGrowthRatio = 3, kTimeConstants = 8, kShortestGrowth = 4, kLongestGrowth = 4000;
@@ -83,8 +85,6 @@ inline constexpr double kSlowestPull = 0.05;
 /// Variances of the noise that a jump must explain, part of the squares that it may leave, and where its search begins,
 /// over the level.
 inline constexpr double kJumpExplains = 40, kJumpLeaves = 0.9, kFirstJump = 0.1;
-/// Rounding of the level, squared.
-inline constexpr double kRoundingOfLevel = 1e-12;
 /// Break-aways with a known friction from which its spread is one; most that friction at one is taken to be above the
 /// others, as a part of it; and most by which log lambda differs: beyond them something else happened.
 inline constexpr std::size_t kFewestLevels = 8;
@@ -101,17 +101,19 @@ inline constexpr double kBetweenSamples = 1.0 / 12, kFewShowGrowth = 4, kBeforeO
 
 // ---- re-stick
 
-/// Standard deviations of the noise, and of the typical peak at most, down to which v_r comes to rest; the same from
-/// which the end of a slip is a straight line, with its least; and samples after the slip among which it is.
+/// Standard deviations of the noise, and of the typical peak at most, down to which v_r comes to rest; what clear of
+/// the noise reaches at most, and the least, from which the end of a slip is a straight line; and samples after the
+/// slip among which it is.
 inline constexpr double kRestickNoise = 4, kRestickAtMost = 0.02;
-inline constexpr double kEndOverNoise = 25, kEndAtMost = 0.06, kEndAtLeast = 0.02;
+inline constexpr double kEndAtMost = 0.06, kEndAtLeast = 0.02;
 inline constexpr std::size_t kRestickWithin = 64;
 
 // ---- friction at break-away
 
-/// Samples of a stick whose second half is enough for a line, fewest of a line, and from which it may be a parabola
-/// where its curvature is so many standard errors. Correlation of neighbours that sticks are long enough to show.
-inline constexpr std::size_t kHalfOfStick = 40, kShortestLine = 3, kShortestParabola = 20;
+/// Samples that show a line of their own beside others, or whether it is bent; a stick of twice as many has them in its
+/// second half. Fewest of a line; standard errors of its curvature from which it is a parabola. Correlation of
+/// neighbours that sticks are long enough to show.
+inline constexpr std::size_t kShowsLine = 20, kShortestLine = 3;
 inline constexpr double kClearCurvature = 5, kMostCorrelation = 0.98;
 
 // ---- a block at one speed
@@ -152,10 +154,8 @@ inline constexpr std::size_t kManySlips = 30;
 
 // ---- the pull of the disc
 
-/// Speed of the disc over that at the end of a stick, below which it loaded the spring along another line, and the
-/// fewest samples that show a line.
+/// Speed of the disc over that at the end of a stick, below which it loaded the spring along another line.
 inline constexpr double kSlowerPull = 0.5;
-inline constexpr std::size_t kShortestPull = 20;
 /// Cycles from which the coupling of load and friction is known beside how it scatters.
 inline constexpr std::size_t kFewestCoupledCycles = 12;
 

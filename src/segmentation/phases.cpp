@@ -6,7 +6,7 @@
 #include "kinematics/limits.hpp"
 #include "limits.hpp"
 #include "statistics/reductions.hpp"
-#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::segmentation {
@@ -104,7 +104,7 @@ Thresholds thresholds_of(const Motion& motion, int threads) {
   for (const double v : motion.disc_velocity) fastest = std::max(fastest, std::abs(v));
   fastest = std::max(fastest, std::abs(motion.constant_disc_velocity));
   if (motion.stick.below > 0) return {motion.stick.below, motion.stick.below, peak > motion.stick.below ? peak : 0};
-  if (peak <= std::max(kSlipsOverError * noise, kRoundingOfVelocity * fastest))
+  if (peak <= std::max(kSlipsOverError * noise, kRoundingPart * fastest))
     return {kSlipsOverError * noise, kStickOverError * noise, 0};
   t.peak = peak;
   t.slip = std::max(kSlipsOverFastest * peak, std::min(kSlipsOverError * noise, kSlipAtMost * peak));

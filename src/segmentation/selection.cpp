@@ -45,10 +45,9 @@ bool Segmentation::is_selected(const Cycle& cycle) const {
 
 std::size_t samples_in_slip(const Segmentation& segmentation) {
   std::size_t samples = 0;
-  const bool pieces = segmentation.kind == MotionKind::always_slipping;
   for (const Cycle& cycle : segmentation.cycles) {
-    const bool selected = pieces ? segmentation.is_selected(cycle.slip) : segmentation.is_selected(cycle);
-    if (selected) samples += cycle.slip.size();
+    const bool is_piece = segmentation.kind == MotionKind::always_slipping;
+    if (segmentation.is_selected(is_piece ? cycle.slip : whole(cycle))) samples += cycle.slip.size();
   }
   return samples;
 }

@@ -44,9 +44,9 @@ double fastest_of(const Motion& motion, const std::vector<SlipBranch>& branches)
 std::vector<BranchBand> bands_over_speed(const Motion& motion, const std::vector<SlipBranch>& branches,
                                          std::span<const double> values, std::size_t bins) {
   const double fastest = fastest_of(motion, branches);
-  std::vector<BandOverCycles> bands(3, BandOverCycles(0, fastest, bins));
+  std::vector<BinnedSamples> bands(3, BinnedSamples(0, fastest, bins));
   for (const SlipBranch& piece : branches) {
-    BandOverCycles& band = bands[static_cast<std::size_t>(piece.branch)];
+    BinnedSamples& band = bands[static_cast<std::size_t>(piece.branch)];
     for (std::size_t i = piece.samples.begin; i < piece.samples.end; ++i) {
       band.add(std::abs(motion.relative_velocity[i]), piece.direction * values[i]);
     }
@@ -62,18 +62,14 @@ std::vector<BranchBand> bands_over_speed(const Motion& motion, const std::vector
 
 std::size_t whole_cycles_near_middle(const Segmentation& segmentation, std::size_t count) {
   const std::span<const Cycle> cycles(segmentation.cycles);
-  const std::size_t last = cycles.size() - count, middle = last / 2;
+  const std::size_t last = cycles.size() - count;
   const auto whole = [&](std::size_t first) {
     const std::span<const Cycle> shown = cycles.subspan(first, count);
     return std::all_of(shown.begin(), shown.end(), [&](const Cycle& c) {
       return c.stick_complete && c.slip_complete && segmentation.is_selected(c);
     });
   };
-  for (std::size_t off = 0; off <= last; ++off) {
-    if (middle + off <= last && whole(middle + off)) return middle + off;
-    if (off <= middle && whole(middle - off)) return middle - off;
-  }
-  return middle;
+  return nearest_to_middle(last, whole).value_or(last / 2);
 }
 
 }  // namespace tribofit

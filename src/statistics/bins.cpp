@@ -6,32 +6,21 @@
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
-namespace {
 
-constexpr std::size_t kNoBin = static_cast<std::size_t>(-1);
-
-/// Index of the bin of x among `count`; none outside. What lies on the upper end belongs to the last bin.
-std::size_t bin_of(double x, double from, double width, std::size_t count) {
-  const double at = (x - from) / width;
-  if (!(at >= 0) || !(at <= static_cast<double>(count))) return kNoBin;
-  return std::min(static_cast<std::size_t>(at), count - 1);
-}
-
-}  // namespace
-
-BandOverCycles::BandOverCycles(double from, double to, std::size_t bins)
+BinnedSamples::BinnedSamples(double from, double to, std::size_t bins)
     : from_(from), width_((to - from) / static_cast<double>(bins)), bins_(bins) {}
 
-void BandOverCycles::add(double x, double y) {
-  const std::size_t k = bin_of(x, from_, width_, bins_.size());
-  if (k == kNoBin || !std::isfinite(y)) return;
-  Bin& bin = bins_[k];
+void BinnedSamples::add(double x, double y) {
+  const double at = (x - from_) / width_;
+  if (!(at >= 0) || !(at <= static_cast<double>(bins_.size())) || !std::isfinite(y)) return;
+  Bin& bin = bins_[std::min(static_cast<std::size_t>(at), bins_.size() - 1)];
+  bin.largest = bin.count == 0 ? y : std::max(bin.largest, y);
   bin.sum_x += x;
   bin.sum_y += y;
   ++bin.count;
 }
 
-void BandOverCycles::end_cycle() {
+void BinnedSamples::end_cycle() {
   ++cycles_;
   for (Bin& bin : bins_) {
     if (bin.count == 0) continue;
@@ -43,7 +32,7 @@ void BandOverCycles::end_cycle() {
   }
 }
 
-CycleBand BandOverCycles::band() const {
+CycleBand BinnedSamples::band() const {
   CycleBand out;
   for (const Bin& bin : bins_) {
     if (bin.means.empty() || 10 * bin.means.size() < cycles_) continue;
@@ -57,26 +46,12 @@ CycleBand BandOverCycles::band() const {
   return out;
 }
 
-ExtremesInBins::ExtremesInBins(double from, double to, std::size_t bins)
-    : from_(from), width_((to - from) / static_cast<double>(bins)), bins_(bins) {}
-
-void ExtremesInBins::add(double x, double y) {
-  const std::size_t k = bin_of(x, from_, width_, bins_.size());
-  if (k == kNoBin || !std::isfinite(y)) return;
-  Bin& bin = bins_[k];
-  bin.largest = bin.count == 0 ? y : std::max(bin.largest, y);
-  bin.sum_x += x;
-  bin.sum_y += y;
-  ++bin.count;
-}
-
-BinExtremes ExtremesInBins::result() const {
+BinExtremes BinnedSamples::extremes() const {
   BinExtremes out;
   for (const Bin& bin : bins_) {
     if (bin.count == 0) continue;
-    const double count = static_cast<double>(bin.count);
-    out.at.push_back(bin.sum_x / count);
-    out.mean.push_back(bin.sum_y / count);
+    out.at.push_back(bin.sum_x / static_cast<double>(bin.count));
+    out.mean.push_back(bin.sum_y / static_cast<double>(bin.count));
     out.largest.push_back(bin.largest);
   }
   return out;

@@ -6,28 +6,35 @@
 
 namespace tribofit {
 
+// ---- series and their spectra
+
+/// Values of a series that have a spectrum: fewer have no frequencies beside those that a model takes away. Of one in
+/// which a line, or noise beside a parabola, is looked for: fewer leave no octave to compare with.
+inline constexpr std::size_t kFewestOfSpectrum = 16, kFewestOfLine = 32;
+
+/// Periods in a record below which a drift is not distinguishable from a line, and a model that was fitted has taken
+/// power away.
+inline constexpr std::size_t kFewestPeriods = 3;
+
+/// Place of a line between bins of a transform, as bits: to 2e-6 of a bin.
+inline constexpr int kBitsOfPlace = 20;
+
+/// What rounding leaves of the squares of a series that is constant.
+inline constexpr double kRounding = 1e-24;
+
+/// By how much a likelihood must rise for each parameter that is added (H. Akaike, IEEE Trans. Autom. Control 19 (1974)
+/// 716). Noise that does not wander reaches that of two in one series of ten or fewer.
+inline constexpr double kPriceOfParameter = 1;
+
 // ---- slow noise; all likelihoods are logarithms
 
-/// Values of a series that show slow noise: fewer have no frequencies beside those that a model takes away.
-inline constexpr std::size_t kFewestSlowValues = 16;
-
-/// Stretches, and values in one, whose median periodogram shows 1/f noise: with fewer a median is not yet that of the
-/// distribution, and no octave is left beside a parabola.
-inline constexpr std::size_t kFewestStretches = 20, kShortestStretch = 32;
-
-/// Of the squares of a series: what rounding leaves of one that is constant.
-inline constexpr double kConstantSeries = 1e-20;
+/// Stretches whose median periodogram shows 1/f noise: with fewer a median is not yet that of the distribution.
+inline constexpr std::size_t kFewestStretches = 20;
 
 /// By how much the likelihood of an autoregression must exceed that of 1/f noise: it has a parameter more, and a record
 /// that is not much longer than its memory cannot distinguish the two. Less: 1/f noise passes for an autoregression,
 /// and slow effects are named in it.
 inline constexpr double kClearlyLikelier = 5;
-
-/// By how much slow noise must exceed independent noise alone (H. Akaike, IEEE Trans. Autom. Control 19 (1974) 716).
-inline constexpr double kLikelier = 1;
-
-/// Below as many periods in the record a model that was fitted has taken power away.
-inline constexpr double kFirstBin = 3;
 
 /// 1/f noise has power below the lowest frequency of its record too: down to that of one so many times as long.
 inline constexpr std::size_t kLonger = 8;
@@ -40,28 +47,21 @@ inline constexpr double kChanceOfLine = 0.5;
 
 // ---- a periodic line in a series, for the standard error of its mean
 
-/// Values that show a line, bin of a transform over twice the series below which a line is a drift (two periods in
-/// the record), and chance that the largest of all bins is as high in noise.
-inline constexpr std::size_t kFewestOfLine = 32, kSlowestBinOfLine = 4;
+/// Bin of a transform over twice the series below which a line is a drift (two periods in the record), and chance that
+/// the largest of all bins is as high in noise.
+inline constexpr std::size_t kSlowestBinOfLine = 4;
 inline constexpr double kChanceOfPeriod = 1e-3;
 
 // ---- the strongest line of a signal
 
-/// Bin of the transform below which a drift is not distinguishable from a line.
-inline constexpr std::size_t kSlowestBin = 3;
 /// Harmonics that may exceed their fundamental (short slips are pulses), and its height over theirs where it is one.
 inline constexpr std::size_t kHighestHarmonic = 10;
 inline constexpr double kFundamentalHeight = 0.5;
 /// Samples that are transformed: more cost time, and the reduced record shows low lines as well.
 inline constexpr std::size_t kMostTransformedAtOnce = std::size_t{1} << 15;
-/// Samples in a period of what is kept of a spectrum (what lies above then folds back from seven times as high on), and
-/// of a line whose place is refined.
-inline constexpr double kSamplesPerPeriod = 8, kSamplesPerRefined = 16;
-/// Samples of a spectrum.
-inline constexpr std::size_t kFewestOfSpectrum = 16, kFewestReduced = 8;
-
-/// Values from which a transform is made of two of half the length, side by side: below, starting a thread costs more.
-inline constexpr std::size_t kFewestOfHalves = 1 << 14;
+/// Samples in a period of what is kept of a spectrum (what lies above then folds back from seven times as high on); of
+/// a line whose place is refined twice as many.
+inline constexpr double kSamplesPerPeriod = 8;
 
 // ---- local derivatives
 
@@ -77,9 +77,6 @@ inline constexpr double kLoneSample = 6, kLoneSteepness = 3;
 /// Logarithm of the largest ratio of the variances of wandering and white noise, and of the smallest: beyond it one of
 /// them is not seen.
 inline constexpr double kLargestNoiseRatio = 14;
-/// Fall of minus twice the logarithm of the likelihood from which on noise is said to wander: the price of its two
-/// parameters by Akaike's criterion. White noise reaches it in one series of ten or fewer.
-inline constexpr double kLikelihoodOfWandering = 4;
 
 // ---- lines with corners
 

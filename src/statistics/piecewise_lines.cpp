@@ -210,9 +210,9 @@ bool is_monotonic(const std::vector<double>& slopes) {
 
 /// Whether a stretch over which the slope changes steadily by that much would look the same.
 bool may_bend(std::span<const double> t, const Stretch& stretch, double change, double noise) {
-  constexpr double kFromLine = 0.0373;  // root mean square distance of a parabola from its line, over change and time
   const auto samples = static_cast<double>(stretch.end - stretch.begin);
-  const double from_line = kFromLine * std::abs(change) * (t[stretch.end - 1] - t[stretch.begin]);
+  // Root mean square distance of a parabola from its line.
+  const double from_line = std::abs(change) * (t[stretch.end - 1] - t[stretch.begin]) / std::sqrt(720.0);
   return samples < 2 * kFewestOfPiece || std::sqrt(samples) * from_line < kCornersOfRamp * kCornerOfNoise * noise;
 }
 

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "limits.hpp"
@@ -12,13 +11,8 @@ namespace tribofit {
 
 StraightLine fit_line(std::span<const double> samples) {
   if (samples.empty()) return {};
-  const double n = static_cast<double>(samples.size()), centre = 0.5 * (n - 1), squares = n * (n * n - 1) / 12;
-  double sum = 0, moment = 0;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    sum += samples[i];
-    moment += (static_cast<double>(i) - centre) * samples[i];
-  }
-  return {centre, sum / n, squares > 0 ? moment / squares : 0, squares};
+  const Parabola through = fit_parabola(samples);
+  return {through.centre(), through.mean, through.slope, through.line_norm()};
 }
 
 StraightLine fit_line(std::span<const double> x, std::span<const double> y, std::span<const double> weights) {
@@ -39,7 +33,6 @@ StraightLine fit_line(std::span<const double> x, std::span<const double> y, std:
     norm += weight(i) * x[i] * x[i];
   }
   // The mean of equal abscissas may differ from them by rounding.
-  constexpr double kRounding = 1e-24;
   if (line.squares > kRounding * norm) {
     line.slope = moment / line.squares;
   } else {
@@ -158,23 +151,13 @@ double peak_between(double before, double middle, double after) {
 }
 
 std::vector<double> slope_weights(std::size_t left, std::size_t right) {
-  const std::size_t n = left + right + 1;
-  std::array<double, 5> m{};
-  for (std::size_t i = 0; i < n; ++i) {
-    const double x = static_cast<double>(i) - static_cast<double>(left);
-    double power = 1;
-    for (double& moment : m) {
-      moment += power;
-      power *= x;
-    }
-  }
-  // Normal equations of c0 + c1 x + c2 x^2; c1 is the slope at x = 0. Cofactors of the second row.
-  const double k0 = -(m[1] * m[4] - m[2] * m[3]), k1 = m[0] * m[4] - m[2] * m[2], k2 = -(m[0] * m[3] - m[1] * m[2]);
-  const double determinant = m[1] * k0 + m[2] * k1 + m[3] * k2;
-  std::vector<double> weights(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const double x = static_cast<double>(i) - static_cast<double>(left);
-    weights[i] = (k0 + k1 * x + k2 * x * x) / determinant;
+  Parabola through;
+  through.count = static_cast<double>(left + right + 1);
+  const double place = static_cast<double>(left) - through.centre();
+  std::vector<double> weights;
+  for (std::size_t i = 0; i <= left + right; ++i) {
+    const double x = static_cast<double>(i) - through.centre();
+    weights.push_back(x / through.line_norm() + 2 * place * (x * x - through.shift()) / through.curvature_norm());
   }
   return weights;
 }

@@ -12,17 +12,14 @@ constexpr std::size_t kMostBlocks = std::size_t{1} << 17;
 }  // namespace
 
 Extremes extremes(std::span<const double> x) {
-  Extremes first{x[0], x[0]}, second = first, third = first, fourth = first;  // four strands hide the latency
+  Extremes strands[4] = {{x[0], x[0]}, {x[0], x[0]}, {x[0], x[0]}, {x[0], x[0]}};  // they hide the latency
   std::size_t i = 0;
   for (const std::size_t whole = x.size() - x.size() % 4; i < whole; i += 4) {
-    first.take(x[i]);
-    second.take(x[i + 1]);
-    third.take(x[i + 2]);
-    fourth.take(x[i + 3]);
+    for (std::size_t k = 0; k < 4; ++k) strands[k].take(x[i + k]);
   }
-  for (; i < x.size(); ++i) first.take(x[i]);
-  return {std::min({first.low, second.low, third.low, fourth.low}),
-          std::max({first.high, second.high, third.high, fourth.high})};
+  for (; i < x.size(); ++i) strands[0].take(x[i]);
+  for (const Extremes& strand : strands) strands[0].take(strand.low), strands[0].take(strand.high);
+  return strands[0];
 }
 
 std::vector<double> thinned(std::span<const double> values, std::size_t most) {

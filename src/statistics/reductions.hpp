@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -35,6 +36,12 @@ double sum_of(std::span<const double> x, Term term) {
 /// Mean of values; NaN where there are none.
 inline double mean_of(std::span<const double> x) {
   return sum_of(x, [](double value) { return value; }) / static_cast<double>(x.size());
+}
+
+/// Standard deviation of values about their mean; NaN where there are fewer than two.
+inline double standard_deviation(std::span<const double> x) {
+  const double mean = mean_of(x), squares = sum_of(x, [mean](double value) { return (value - mean) * (value - mean); });
+  return std::sqrt(squares / static_cast<double>(x.size() - std::min<std::size_t>(x.size(), 1)));
 }
 
 /// Extremes of consecutive chunks of a channel: one pass, after which most questions need to look at few chunks only.

@@ -1,79 +1,49 @@
 #include "tribofit/statistics/slow_noise.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <complex>
 #include <limits>
 #include <numbers>
-#include <unsupported/Eigen/FFT>
 
+#include "fourier.hpp"
 #include "limits.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
+#include "tribofit/statistics/spectrum.hpp"
 
 namespace tribofit {
 
 namespace {
 
-using Transform = std::vector<std::complex<double>>;
-
-/// Power of two that is no less than n: other lengths can cost the transform much.
-std::size_t padded(std::size_t n) {
-  std::size_t out = 1;
-  while (out < n) out *= 2;
-  return out;
-}
-
 /// Squares of the Fourier transform of a series over its length, at frequencies finer than it resolves.
-struct Periodogram {
-  std::vector<double> frequency, power;  ///< per value, from kFirstBin periods in the series up to a half
+struct Resolved {
+  std::vector<double> frequency, power;  ///< per value, from kFewestPeriods periods in the series up to a half
   double resolved = 0;                   ///< values that are independent of each other, as a part of all of them
 };
 
-/// Periodograms of series of one length, about their means.
-class WindowedPeriodogram {
- public:
-  explicit WindowedPeriodogram(std::size_t length) : weight_(length) {
-    const auto n = static_cast<double>(length);
-    // A Hann window keeps a line and a slope at their own frequencies.
-    for (std::size_t i = 0; i < length; ++i) {
-      weight_[i] = std::pow(std::sin(std::numbers::pi * (static_cast<double>(i) + 0.5) / n), 2);
-      weights_ += weight_[i] * weight_[i];
-    }
-    fft_.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+/// About its mean. window: Hann's, which keeps a line and a slope at their own frequencies, its zeros between values.
+Resolved resolved_periodogram(std::span<const double> series, const std::vector<double>& window) {
+  // Of values about one frequency so many are worth one: n sum(w^4) / sum(w^2)^2 of the Hann window
+  // (P. D. Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70).
+  constexpr double kBandwidth = 35.0 / 18;
+  const auto n = static_cast<double>(series.size());
+  const std::size_t size = std::bit_ceil(series.size());
+  double mean = 0, weights = 0;
+  for (const double x : series) mean += x / n;
+  for (const double w : window) weights += w * w;
+  std::vector<double> windowed(window);
+  for (std::size_t i = 0; i < series.size(); ++i) windowed[i] *= series[i] - mean;
+  const std::vector<double> squares = periodogram(windowed, size);
+  Resolved out;
+  out.resolved = n / kBandwidth / static_cast<double>(size);
+  for (std::size_t j = 1; j < squares.size(); ++j) {
+    const double f = static_cast<double>(j) / static_cast<double>(size);
+    if (f * n < kFewestPeriods) continue;
+    out.frequency.push_back(f);
+    out.power.push_back(squares[j] / weights);
   }
-
-  Periodogram operator()(std::span<const double> series) {
-    const auto n = static_cast<double>(series.size());
-    const std::size_t size = padded(series.size());
-    double mean = 0;
-    for (const double x : series) mean += x / n;
-    // Of values about one frequency so many are worth one: n sum(w^4) / sum(w^2)^2 of the Hann window
-    // (P. D. Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70).
-    constexpr double kBandwidth = 35.0 / 18;
-    std::vector<double> windowed(size, 0.0);
-    for (std::size_t i = 0; i < series.size(); ++i) windowed[i] = weight_[i] * (series[i] - mean);
-    fft_.fwd(spectrum_, windowed);
-    Periodogram out;
-    out.resolved = n / kBandwidth / static_cast<double>(size);
-    for (std::size_t j = 1; 2 * j <= size; ++j) {
-      const double f = static_cast<double>(j) / static_cast<double>(size);
-      if (f * n < kFirstBin) continue;
-      out.frequency.push_back(f);
-      out.power.push_back(std::norm(spectrum_[j]) / weights_);
-    }
-    return out;
-  }
-
- private:
-  std::vector<double> weight_;
-  double weights_ = 0;
-  Eigen::FFT<double> fft_;
-  Transform spectrum_;
-};
-
-Periodogram windowed_periodogram(std::span<const double> series) {
-  return WindowedPeriodogram(series.size())(series);
+  return out;
 }
 
 /// Spectra of slow noise; the covariance of a series with that of 1/f noise is covariance_of_flicker().
@@ -93,30 +63,26 @@ std::vector<double> autoregression(const std::vector<double>& frequency, double 
 }
 
 std::vector<double> covariance_of_flicker(std::size_t n) {
-  const std::size_t longer = padded(kLonger * n);
-  Transform spectrum(longer), covariance;
-  for (std::size_t j = 1; j < longer; ++j) {
-    spectrum[j] = static_cast<double>(longer) / static_cast<double>(std::min(j, longer - j));
-  }
-  Eigen::FFT<double> fft;
-  fft.inv(covariance, spectrum);
-  std::vector<double> out(n);
+  const std::size_t longer = std::bit_ceil(kLonger * n);
+  std::vector<double> spectrum(longer, 0.0), out(n);
+  for (std::size_t j = 1; j < longer; ++j) spectrum[j] = 1 / static_cast<double>(std::min(j, longer - j));
+  const auto covariance = fourier_lines(spectrum, longer);
   for (std::size_t k = 0; k < n; ++k) out[k] = covariance[k].real();
   return out;
 }
 
 /// Of several series of one length, about a parabola in each: the median at every frequency, which is that of an
 /// exponential distribution.
-Periodogram median_periodogram(std::span<const std::span<const double>> stretches) {
-  std::vector<Periodogram> all;
-  WindowedPeriodogram windowed(stretches.front().size());
+Resolved median_periodogram(std::span<const std::span<const double>> stretches) {
+  std::vector<Resolved> all;
+  const std::vector<double> window = hann_window(stretches.front().size(), 0.5);
   for (const auto& stretch : stretches) {
     const Parabola parabola = fit_parabola(stretch);
     std::vector<double> left(stretch.begin(), stretch.end());
     for (std::size_t i = 0; i < left.size(); ++i) left[i] -= parabola.at(static_cast<double>(i) - parabola.centre());
-    all.push_back(windowed(left));
+    all.push_back(resolved_periodogram(left, window));
   }
-  Periodogram out = all.front();
+  Resolved out = all.front();
   std::vector<double> values(all.size());
   for (std::size_t j = 0; j < out.power.size(); ++j) {
     for (std::size_t k = 0; k < all.size(); ++k) values[k] = all[k].power[j];
@@ -135,7 +101,7 @@ struct Likeliest {
   double gain = 0;  ///< of that over independent noise alone
 };
 
-Likeliest likeliest(const Periodogram& seen, const std::vector<double>& shape) {
+Likeliest likeliest(const Resolved& seen, const std::vector<double>& shape) {
   Likeliest best;
   constexpr double kStep = 1.5;
   const auto n = static_cast<double>(seen.power.size());
@@ -159,7 +125,7 @@ Likeliest likeliest(const Periodogram& seen, const std::vector<double>& shape) {
 constexpr double kMemories[] = {0.3, 0.5, 0.65, 0.8, 0.9, 0.95};
 
 /// The same where no value of the periodogram counts for more than chance would give the largest of them.
-Likeliest robust_fit(Periodogram seen, const std::vector<double>& shape) {
+Likeliest robust_fit(Resolved seen, const std::vector<double>& shape) {
   constexpr int kRounds = 3;
   const double most = -std::log(kChanceOfLine / (seen.resolved * static_cast<double>(seen.power.size())));
   Likeliest out = likeliest(seen, shape);
@@ -172,40 +138,14 @@ Likeliest robust_fit(Periodogram seen, const std::vector<double>& shape) {
   return out;
 }
 
-}  // namespace
-
-double SlowNoise::variance_of_sum(std::span<const double> weights) const {
-  const std::size_t n = std::min(covariance.size(), weights.size());
-  if (n == 0) return 0;
-  // Products of weights k apart, summed, are the transform of their squared spectrum.
-  std::vector<double> longer(weights.begin(), weights.begin() + static_cast<std::ptrdiff_t>(n)), products;
-  longer.resize(padded(2 * n), 0.0);
-  Eigen::FFT<double> fft;
-  Transform spectrum;
-  fft.fwd(spectrum, longer);
-  for (auto& x : spectrum) x = std::norm(x);
-  fft.inv(products, spectrum);
-  double sum = 0;
-  for (std::size_t k = 0; k < n; ++k) sum += (k == 0 ? 1 : 2) * covariance[k] * products[k];
-  return std::max(0.0, sum);
-}
-
-double SlowNoise::variance_within() const {
-  const std::size_t n = covariance.size();
-  if (n == 0) return 0;
-  return std::max(0.0, covariance[0] - variance_of_sum(std::vector<double>(n, 1 / static_cast<double>(n))));
-}
-
-namespace {
-
 SlowNoise slow_noise_of(std::span<const double> series) {
   const std::size_t n = series.size();
-  if (n < kFewestSlowValues) return {};
-  const Periodogram seen = windowed_periodogram(series);
+  if (n < kFewestOfSpectrum) return {};
+  const Resolved seen = resolved_periodogram(series, hann_window(n, 0.5));
   double squares = 0, left = 0;
   for (const double x : series) squares += x * x;
   for (const double x : seen.power) left += x;
-  if (!(left > kConstantSeries * squares)) return {};
+  if (!(left > kRounding * squares)) return {};
   const Likeliest of_flicker = robust_fit(seen, flicker(seen.frequency));
   Likeliest best;
   double memory = 0;
@@ -214,7 +154,7 @@ SlowNoise slow_noise_of(std::span<const double> series) {
     if (own.log_likelihood > best.log_likelihood) best = own, memory = m;
   }
   SlowNoise out;
-  if (std::max(best.gain, of_flicker.gain) < kLikelier) return out;
+  if (std::max(best.gain, of_flicker.gain) < kPriceOfParameter) return out;
   if (best.log_likelihood > of_flicker.log_likelihood + kClearlyLikelier) {
     for (std::size_t k = 0; k < n; ++k) out.covariance.push_back(best.slow * std::pow(memory, static_cast<double>(k)));
   } else if (of_flicker.slow > 0) {
@@ -227,6 +167,21 @@ SlowNoise slow_noise_of(std::span<const double> series) {
 
 }  // namespace
 
+double SlowNoise::variance_of_sum(std::span<const double> weights) const {
+  const std::size_t n = std::min(covariance.size(), weights.size());
+  if (n == 0) return 0;
+  const std::vector<double> products = products_at_every_lag(weights.first(n), weights.first(n));
+  double sum = 0;
+  for (std::size_t k = 0; k < n; ++k) sum += (k == 0 ? 1 : 2) * covariance[k] * products[n - 1 + k];
+  return std::max(0.0, sum);
+}
+
+double SlowNoise::variance_within() const {
+  const std::size_t n = covariance.size();
+  if (n == 0) return 0;
+  return std::max(0.0, covariance[0] - variance_of_sum(std::vector<double>(n, 1 / static_cast<double>(n))));
+}
+
 SlowNoise slow_noise(std::span<const double> series, double known_flicker) {
   SlowNoise out = slow_noise_of(series);
   if (!(known_flicker > 0) || series.empty()) return out;
@@ -237,10 +192,10 @@ SlowNoise slow_noise(std::span<const double> series, double known_flicker) {
 }
 
 double flicker_power(std::span<const std::span<const double>> stretches) {
-  if (stretches.size() < kFewestStretches || stretches.front().size() < kShortestStretch) return 0;
-  const Periodogram seen = median_periodogram(stretches);
+  if (stretches.size() < kFewestStretches || stretches.front().size() < kFewestOfLine) return 0;
+  const Resolved seen = median_periodogram(stretches);
   const Likeliest of_flicker = likeliest(seen, flicker(seen.frequency));
-  if (of_flicker.gain < kLikelier) return 0;
+  if (of_flicker.gain < kPriceOfParameter) return 0;
   for (const double memory : kMemories) {
     const Likeliest other = likeliest(seen, autoregression(seen.frequency, memory));
     if (other.log_likelihood > of_flicker.log_likelihood + kClearlyLikelier) return 0;

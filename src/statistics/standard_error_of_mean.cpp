@@ -1,31 +1,29 @@
 #include "tribofit/statistics/standard_error_of_mean.hpp"
 
 #include <algorithm>
-#include <array>
+#include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <complex>
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <unsupported/Eigen/FFT>
 #include <vector>
 
-#include "fast_length.hpp"
-#include "golden_section.hpp"
+#include "fourier.hpp"
 #include "limits.hpp"
+#include "reductions.hpp"
+#include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit {
 
 namespace {
 
 void centre(std::vector<double>& x) {
-  double mean = 0;
-  for (const double value : x) mean += value;
-  mean /= static_cast<double>(x.size());
+  const double mean = mean_of(x);
   for (double& value : x) value -= mean;
 }
 
-/// First-order autocorrelation of a centred series, corrected for its small-sample bias, within [0, 0.97].
+/// First-order autocorrelation of a centred series, corrected for its small-sample bias, within [0, kMostCorrelation].
 double first_autocorrelation(const std::vector<double>& d) {
   const auto n = static_cast<double>(d.size());
   double zero = 0, one = 0;
@@ -35,7 +33,7 @@ double first_autocorrelation(const std::vector<double>& d) {
   }
   if (zero <= 0) return 0;
   const double r = one / zero * n / (n - 1);
-  return std::clamp(r + (1 + 3 * r) / n, 0.0, 0.97);
+  return std::clamp(r + (1 + 3 * r) / n, 0.0, kMostCorrelation);
 }
 
 /// A series without what its first-order autoregression predicts, centred.
@@ -60,18 +58,15 @@ struct TurningAngle {
   }
 };
 
-/// A sine in a series.
+/// A sine in a series, and the squares that it takes out.
 struct SeriesLine {
   double frequency = 0;  ///< per value
   std::complex<double> amplitude;
-};
-
-/// Least-squares sine of a frequency in a centred series, and the squares that it takes out.
-struct SineFit {
-  SeriesLine line;
   double squares = 0;
 };
-SineFit sine_in(const std::vector<double>& d, double frequency) {
+
+/// Least-squares sine of a frequency in a centred series.
+SeriesLine sine_in(const std::vector<double>& d, double frequency) {
   TurningAngle z(0, 2 * std::numbers::pi * frequency);
   // Normal equations of cos, sin and a constant; the constant takes their means off.
   double cc = 0, ss = 0, cs = 0, c = 0, s = 0, xc = 0, xs = 0;
@@ -86,20 +81,7 @@ SineFit sine_in(const std::vector<double>& d, double frequency) {
   const double determinant = cc * ss - cs * cs;
   if (!(determinant > 0)) return {};
   const double a = (xc * ss - xs * cs) / determinant, b = (xs * cc - xc * cs) / determinant;
-  return {{frequency, {a, b}}, a * xc + b * xs};
-}
-
-/// Squares of the spectrum at k/bins, k = 0 ... bins/2.
-std::vector<double> periodogram(const std::vector<double>& w, std::size_t bins) {
-  std::vector<double> padded(w);
-  padded.resize(bins, 0.0);
-  Eigen::FFT<double> fft;
-  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-  std::vector<std::complex<double>> spectrum;
-  fft.fwd(spectrum, padded);
-  std::vector<double> power;
-  for (const std::complex<double>& x : spectrum) power.push_back(std::norm(x));
-  return power;
+  return {frequency, {a, b}, a * xc + b * xs};
 }
 
 /// The clearest line of a centred series; none where nothing stands out.
@@ -126,9 +108,13 @@ std::optional<SeriesLine> clearest_line(const std::vector<double>& d) {
     if (power[k] > 0 && chance < least) peak = k, least = chance;
   }
   if (peak == 0) return std::nullopt;
-  const auto left = [&](double frequency) { return -sine_in(d, frequency).squares; };
-  const double at = static_cast<double>(peak), width = 1 / static_cast<double>(bins);
-  return sine_in(d, golden_section(left, (at - 1) * width, std::min(0.5 - width, (at + 1) * width), 24).at).line;
+  const auto frequency_at = [&](double bin) { return bin / static_cast<double>(bins); };
+  const double at = static_cast<double>(peak), last = 0.5 * static_cast<double>(bins) - 1;
+  const double bin =
+      boost::math::tools::brent_find_minima([&](double k) { return -sine_in(d, frequency_at(at + k)).squares; }, -1.0,
+                                            std::min(1.0, last - at), kBitsOfPlace)
+          .first;
+  return sine_in(d, frequency_at(at + bin));
 }
 
 void take_out(const SeriesLine& line, std::vector<double>& d) {
@@ -165,10 +151,11 @@ double lowest_cosines(const std::vector<double>& w, int count) {
 
 }  // namespace
 
-MeanError standard_error_of_mean(std::span<const double> series) {
+Estimate standard_error_of_mean(std::span<const double> series) {
   constexpr int kMostLines = 8, kFewestFrequencies = 2;
   const std::size_t n = series.size();
-  if (n < 3) return {std::numeric_limits<double>::quiet_NaN(), 1};
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  if (n < 3) return {mean_of(series), kUnknown};
   const auto count = static_cast<double>(n);
   const int frequencies = std::max(kFewestFrequencies, static_cast<int>(std::lround(0.4 * std::pow(count, 2.0 / 3.0))));
   std::vector<double> d(series.begin(), series.end());
@@ -186,25 +173,22 @@ MeanError standard_error_of_mean(std::span<const double> series) {
   }
   const double r = first_autocorrelation(d);
   const double long_run_variance = lowest_cosines(prewhitened(d, r), frequencies) / freedom / ((1 - r) * (1 - r));
-  return {std::sqrt(long_run_variance / count + of_lines), static_cast<double>(freedom)};
+  return {mean_of(series), std::sqrt(long_run_variance / count + of_lines), static_cast<double>(freedom)};
 }
 
 Estimate mean_of_independent(std::span<const double> values) {
   const auto n = static_cast<double>(values.size());
-  double sum = 0, squares = 0;
-  for (const double value : values) sum += value;
-  for (const double value : values) squares += (value - sum / n) * (value - sum / n);
-  return {sum / n, std::sqrt(squares / (n * (n - 1))), n - 1};  // 0/0 where there are too few
+  return {mean_of(values), standard_deviation(values) / std::sqrt(n), n - 1};  // 0/0 where there are too few
 }
 
 Estimate mean_with_error(std::vector<double> values) {
   std::erase_if(values, [](double value) { return std::isnan(value); });
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  if (values.empty()) return {kUnknown, kUnknown};
-  double sum = 0;
-  for (const double value : values) sum += value;
-  const MeanError error = standard_error_of_mean(values);
-  return {sum / static_cast<double>(values.size()), error.std_error, error.degrees_of_freedom};
+  return standard_error_of_mean(values);
+}
+
+Interval Estimate::interval95() const {
+  const double half = t_quantile_95(degrees_of_freedom) * std_error;
+  return {value - half, value + half};
 }
 
 }  // namespace tribofit

@@ -3,32 +3,27 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <set>
 
 namespace tribofit {
 namespace {
 
-constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-
 /// Appends what is to be drawn of samples [begin, end).
 void draw_stretch(std::span<const double> values, std::size_t begin, std::size_t end, std::vector<std::size_t>& drawn) {
-  std::size_t least = kNone, largest = kNone, gap = kNone;
-  double low = std::numeric_limits<double>::infinity(), high = -low;
+  std::size_t least = end, largest = end, gap = end;
   for (std::size_t i = begin; i < end; ++i) {
-    const double x = values[i];
-    if (!std::isfinite(x)) {
-      if (gap == kNone) gap = i;
+    if (!std::isfinite(values[i])) {
+      gap = std::min(gap, i);
       continue;
     }
-    if (x < low) low = x, least = i;
-    if (x > high) high = x, largest = i;
+    if (least == end || values[i] < values[least]) least = i;
+    if (largest == end || values[i] > values[largest]) largest = i;
   }
   std::array<std::size_t, 5> kept = {begin, least, largest, gap, end - 1};
   std::sort(kept.begin(), kept.end());
   for (const std::size_t i : kept) {
-    if (i != kNone && (drawn.empty() || drawn.back() != i)) drawn.push_back(i);
+    if (i != end && (drawn.empty() || drawn.back() != i)) drawn.push_back(i);
   }
 }
 

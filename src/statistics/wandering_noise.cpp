@@ -7,8 +7,8 @@
 
 #include "limits.hpp"
 #include "linear_algebra.hpp"
+#include "tribofit/execution/stop.hpp"
 #include "tribofit/statistics/quantiles.hpp"
-#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit {
 
@@ -36,9 +36,8 @@ class Likelihood {
     double logs = 0;
     Eigen::Index parameters = shared_, values = columns_.cols();
     for (std::size_t s = 0; s < series_.stretch_begins.size(); ++s) {
-      const auto begin = static_cast<Eigen::Index>(series_.stretch_begins[s]);
-      const auto end = s + 1 < series_.stretch_begins.size() ? static_cast<Eigen::Index>(series_.stretch_begins[s + 1])
-                                                             : columns_.cols();
+      const auto begin = static_cast<Eigen::Index>(series_.stretch_begins[s]),
+                 end = static_cast<Eigen::Index>(series_.end_of(s));
       if (end - begin <= own_) {
         values -= end - begin;
         continue;
@@ -61,17 +60,12 @@ class Likelihood {
         logs += std::log(total);
         part.selfadjointView<Eigen::Lower>().rankUpdate(innovation, 1 / total);
       }
-      if (own_ > 0) {
-        const Eigen::MatrixXd corner = part.bottomRightCorner(own_, own_);
-        const Eigen::MatrixXd cross = part.bottomLeftCorner(own_, free);
-        logs += log_determinant(corner);
-        sum += part.topLeftCorner(free, free).triangularView<Eigen::Lower>().toDenseMatrix();
-        sum -=
-            (cross.transpose() * solve_symmetric(full(corner), cross)).triangularView<Eigen::Lower>().toDenseMatrix();
-        parameters += own_;
-      } else {
-        sum += part.topLeftCorner(free, free).triangularView<Eigen::Lower>().toDenseMatrix();
-      }
+      sum += part.topLeftCorner(free, free).triangularView<Eigen::Lower>().toDenseMatrix();
+      if (own_ == 0) continue;
+      const Eigen::MatrixXd corner = part.bottomRightCorner(own_, own_), cross = part.bottomLeftCorner(own_, free);
+      logs += log_determinant(corner);
+      sum -= (cross.transpose() * solve_symmetric(full(corner), cross)).triangularView<Eigen::Lower>().toDenseMatrix();
+      parameters += own_;
     }
     double squares = sum(shared_, shared_);
     if (shared_ > 0) {
@@ -106,8 +100,7 @@ std::array<double, 2> range_of_times(const NoisySeries& series) {
   std::vector<double> intervals;
   double longest = 0;
   for (std::size_t s = 0; s < series.stretch_begins.size(); ++s) {
-    const std::size_t begin = series.stretch_begins[s],
-                      end = s + 1 < series.stretch_begins.size() ? series.stretch_begins[s + 1] : series.time.size();
+    const std::size_t begin = series.stretch_begins[s], end = series.end_of(s);
     for (std::size_t i = begin + 1; i < end; ++i) intervals.push_back(series.time[i] - series.time[i - 1]);
     if (end > begin) longest = std::max(longest, series.time[end - 1] - series.time[begin]);
   }
@@ -150,7 +143,7 @@ WanderingNoise estimate_noise(const NoisySeries& series, const Eigen::VectorXd& 
                         consider(ratio_at + step, time_at - step) || consider(ratio_at - step, time_at + step);
     if (!better) step *= 0.5;
   }
-  if (alone - least < kLikelihoodOfWandering) return only_white;
+  if (0.5 * (alone - least) < 2 * kPriceOfParameter) return only_white;
   best.slow = best.white * std::exp(0.5 * ratio_at);
   best.time = std::exp(time_at);
   return best;
@@ -171,8 +164,7 @@ NoiseMoments noise_moments(const NoisySeries& series, const Eigen::MatrixXd& wei
   const double white = noise.white * noise.white, slow = noise.slow * noise.slow;
   Eigen::VectorXd carried(n);
   for (std::size_t s = 0; s < series.stretch_begins.size(); ++s) {
-    const std::size_t begin = series.stretch_begins[s],
-                      end = s + 1 < series.stretch_begins.size() ? series.stretch_begins[s + 1] : series.time.size();
+    const std::size_t begin = series.stretch_begins[s], end = series.end_of(s);
     carried.setZero();
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::VectorXd row = weights.row(static_cast<Eigen::Index>(i)).transpose();

@@ -21,6 +21,10 @@ struct WanderingNoise {
 struct NoisySeries {
   std::span<const double> time, count;
   std::span<const std::size_t> stretch_begins;  ///< first value of each stretch; ends where the next one begins
+
+  std::size_t end_of(std::size_t stretch) const {
+    return stretch + 1 < stretch_begins.size() ? stretch_begins[stretch + 1] : time.size();
+  }
 };
 
 /// Sizes and time of the noise from the residuals of a least-squares fit, by restricted maximum likelihood (H. D.

@@ -4,26 +4,21 @@
 #include <optional>
 #include <span>
 
+#include "tribofit/segmentation/slip_branches.hpp"
+
 namespace tribofit {
 namespace {
 
 /// The first of `count` whole cycles in a row that are followed by another break-away in the same direction.
 std::optional<std::size_t> first_of(const std::vector<Cycle>& cycles, std::size_t count) {
   if (cycles.size() <= count) return std::nullopt;
-  const std::size_t last = cycles.size() - count - 1, middle = last / 2;
-  const auto whole = [&](std::size_t first) {
+  return nearest_to_middle(cycles.size() - count - 1, [&](std::size_t first) {
     const std::span<const Cycle> shown = std::span(cycles).subspan(first, count + 1);
-    const int direction = shown.front().direction;
     return std::all_of(shown.begin(), shown.end(), [&](const Cycle& c) {
       const bool is_last = &c == &shown.back();
-      return c.stick_complete && (is_last || c.slip_complete) && c.direction == direction;
+      return c.stick_complete && (is_last || c.slip_complete) && c.direction == shown.front().direction;
     });
-  };
-  for (std::size_t off = 0; off <= last; ++off) {
-    if (middle + off <= last && whole(middle + off)) return middle + off;
-    if (off <= middle && whole(middle - off)) return middle - off;
-  }
-  return std::nullopt;
+  });
 }
 
 /// Sets beginning and end of the displacement by a straight line.

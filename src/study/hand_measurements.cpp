@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "limits.hpp"
+#include "tribofit/statistics/distributions.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 #include "weighing.hpp"
 
@@ -47,11 +48,6 @@ double error_of_zero(const OpenQuestion& question) {
   return std::hypot(kReadingOfZero * median(sizes), kNoiseOfZero * question.record.noise.friction_noise);
 }
 
-/// Chance that a value so many of its errors beyond a limit is read beyond it.
-double chance_of_slower(double errors) {
-  return 0.5 * std::erfc(-errors / std::sqrt(2.0));
-}
-
 double chance_of_shift(double shift, double error) {
   return shift != 0 ? chance_beyond(std::abs(shift) / error) : 0;
 }
@@ -62,7 +58,7 @@ double chance_between(const Shown& own, const Shown& other, const Experiment& ex
   const double slow = 4 / (2 * std::numbers::pi * experiment.tap);
   const double by_filter = std::abs(own.filter - other.filter) / slow;
   return std::max(chance_of_shift(own.shift - other.shift, error),
-                  by_filter > 0 ? chance_of_slower((by_filter - 1) / kReadingOfSlope) : 0);
+                  by_filter > 0 ? normal_below((by_filter - 1) / kReadingOfSlope) : 0);
 }
 
 }  // namespace

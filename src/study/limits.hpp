@@ -32,6 +32,15 @@ inline constexpr double kShrinks = 1e-4;
 /// Longest cycles after which a motion that still sticks keeps sticking, and the change of a swing that is rounding.
 inline constexpr double kCyclesThatStick = 4, kSameSwing = 1e-9;
 
+// ---- the smoothed law
+
+/// Rounding of v_r in a stick, in parts of the break-away coefficient, that a smoothed law may turn into friction: at
+/// 7e-9 periods are right to 1e-8, at 7e-8 wrong by 1e-4.
+inline constexpr double kMostRounding = 2e-8;
+
+/// Share of the longest step with which the solver begins; the error control finds its own from there.
+inline constexpr double kFirstStep = 1e-6;
+
 // ---- the critical speed
 
 /// Speeds in equal ratios among which stick and stability are looked for. Fewer: a second change between two of them is

@@ -1,17 +1,15 @@
 #include "tribofit/study/map.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <mutex>
 #include <string>
 
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/oscillator/steady_sliding.hpp"
 #include "tribofit/output/digits.hpp"
-#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 
@@ -30,9 +28,8 @@ void check_axis(const MapRequest& request, const MapAxis& axis) {
       steady_sliding(with_value(request.machine, axis.variable.name, value));
     } catch (const InputError& error) {
       const std::string unit = axis.variable.unit == "1" ? "" : " " + std::string(axis.variable.unit);
-      throw InputError(
-          fmt::format("{} = {}{}: {}", axis.variable.name, general(value / axis.variable.si), unit, error.what()),
-          "let the axis begin and end where there is a machine");
+      throw InputError(axis.variable.name + " = " + general(value / axis.variable.si) + unit + ": " + error.what(),
+                       "let the axis begin and end where there is a machine");
     }
   }
 }

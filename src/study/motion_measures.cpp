@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "segmentation/measures.hpp"
+#include "segmentation/counts.hpp"
 #include "tribofit/statistics/spectrum.hpp"
 
 namespace tribofit {

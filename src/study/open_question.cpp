@@ -10,9 +10,9 @@
 #include "diagnosis/ruling.hpp"
 #include "fit/fit_laws.hpp"
 #include "limits.hpp"
+#include "tribofit/execution/parallel.hpp"
+#include "tribofit/execution/stop.hpp"
 #include "tribofit/friction/effect_pairs.hpp"
-#include "tribofit/statistics/parallel.hpp"
-#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit {
 

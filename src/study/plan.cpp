@@ -15,8 +15,8 @@
 #include "limits.hpp"
 #include "open_question.hpp"
 #include "seen_in_runs.hpp"
-#include "tribofit/statistics/parallel.hpp"
-#include "tribofit/statistics/stop.hpp"
+#include "tribofit/execution/parallel.hpp"
+#include "tribofit/execution/stop.hpp"
 #include "weighing.hpp"
 
 namespace tribofit {

@@ -5,7 +5,10 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <span>
 
+#include "oscillator/find_zero.hpp"
+#include "statistics/reductions.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
@@ -101,15 +104,9 @@ Loop loop_of(const MeanSlip& slip) {
     }
     return sum;
   };
-  double low = -0.25 * kPhases, high = 0.25 * kPhases;
-  double at_low = gap(low);
-  if (at_low * gap(high) > 0) return {};
-  for (int step = 0; step < 40; ++step) {
-    const double middle = 0.5 * (low + high), here = gap(middle);
-    (here * at_low > 0 ? low : high) = middle;
-    if (here * at_low > 0) at_low = here;
-  }
-  const double time = 0.5 * (low + high) / kPhases * slip.time;
+  const double most = 0.25 * kPhases, at_low = gap(-most), at_high = gap(most);
+  if (at_low * at_high > 0) return {};
+  const double time = find_zero(gap, -most, most, at_low, at_high) / kPhases * slip.time;
   return {time, time * speed / static_cast<double>(places.size())};
 }
 
@@ -123,12 +120,6 @@ RunCurve break_aways(const SimulatedRun& run) {
     out.y.push_back(cycle.break_away_friction);
   }
   return out;
-}
-
-double mean_of(const std::vector<double>& x) {
-  double sum = 0;
-  for (const double v : x) sum += v;
-  return x.empty() ? kNotSeen : sum / static_cast<double>(x.size());
 }
 
 /// Break-away after sticks of more than half the longest, where those are far longer than most.
@@ -158,11 +149,9 @@ RunCurve levels(const SimulatedRun& run) {
 
 /// Change from the first quarter of a record to the last.
 double change_over(const RunCurve& levels) {
-  const std::size_t n = levels.y.size(), part = n / 4;
-  if (part < 2) return kNotSeen;
-  const std::vector<double> first(levels.y.begin(), levels.y.begin() + static_cast<std::ptrdiff_t>(part));
-  const std::vector<double> last(levels.y.end() - static_cast<std::ptrdiff_t>(part), levels.y.end());
-  return mean_of(last) - mean_of(first);
+  const std::size_t part = levels.y.size() / 4;
+  const std::span<const double> y(levels.y);
+  return part < 2 ? kNotSeen : mean_of(y.last(part)) - mean_of(y.first(part));
 }
 
 /// Amplitude of the swing of the levels once a revolution, beside a straight line.
@@ -197,8 +186,8 @@ double creep_of(const SimulatedRun& run) {
 
 }  // namespace
 
-const std::vector<RunMeasure>& run_measures() {
-  static const std::vector<RunMeasure> all = {
+const std::vector<MotionMeasureInfo>& run_measures() {
+  static const std::vector<MotionMeasureInfo> all = {
       {"loop of friction over v_r", "ms", kMillisecond},
       {"loop over the distance slid", "um", 1e-6},
       {"break-away", "", 1},

@@ -2,22 +2,16 @@
 
 #include <vector>
 
+#include "motion_measures.hpp"
 #include "simulated_run.hpp"
 #include "tribofit/study/plan.hpp"
 
 namespace tribofit {
 
-/// What a person sees in a run.
-struct RunMeasure {
-  const char* name;
-  const char* unit;
-  double si;
-};
-
-/// Loop of friction over v_r in time and in distance, break-away, break-away after the longest sticks, least friction
-/// in slip, speed of creep in stick, change of friction over the record, swing of friction over a revolution, peak v_r,
-/// and frequency.
-const std::vector<RunMeasure>& run_measures();
+/// What a person sees in a run: loop of friction over v_r in time and in distance, break-away, break-away after the
+/// longest sticks, least friction in slip, speed of creep in stick, change of friction over the record, swing of
+/// friction over a revolution, peak v_r, and frequency.
+const std::vector<MotionMeasureInfo>& run_measures();
 /// One value each [SI]; NaN where the run does not show it.
 std::vector<double> measure_run(const SimulatedRun& run);
 

@@ -8,7 +8,9 @@
 #include "hand_measurements.hpp"
 #include "limits.hpp"
 #include "run_measures.hpp"
-#include "tribofit/statistics/parallel.hpp"
+#include "statistics/reductions.hpp"
+#include "tribofit/execution/parallel.hpp"
+#include "tribofit/statistics/distributions.hpp"
 #include "weighing.hpp"
 
 namespace tribofit {
@@ -30,18 +32,16 @@ SimulatedDraws draws_to_see(const OpenQuestion& question, const Experiment& expe
 
 struct MeanAndSpread {
   double mean = std::numeric_limits<double>::quiet_NaN(), spread = 0;
+  PredictedValue range95() const {
+    return {mean, mean - kNormalQuantile95 * spread, mean + kNormalQuantile95 * spread};
+  }
 };
 /// Of those that are known, where most are.
-MeanAndSpread spread_of(const std::vector<double>& values) {
-  double sum = 0, squares = 0, n = 0;
-  for (const double v : values) {
-    if (std::isfinite(v)) sum += v, n += 1;
-  }
-  if (n < 2 || 2 * n < static_cast<double>(values.size())) return {};
-  for (const double v : values) {
-    if (std::isfinite(v)) squares += std::pow(v - sum / n, 2);
-  }
-  return {sum / n, std::sqrt(squares / (n - 1))};
+MeanAndSpread spread_of(std::vector<double> values) {
+  const std::size_t all = values.size();
+  std::erase_if(values, [](double v) { return !std::isfinite(v); });
+  if (values.size() < 2 || 2 * values.size() < all) return {};
+  return {mean_of(values), standard_deviation(values)};
 }
 
 /// By how many of their spreads two models are apart that are furthest.
@@ -99,10 +99,9 @@ PredictedCurves::OfModel band_of(const std::vector<RunCurve>& draws, RunView vie
   const auto add = [&](double x, const std::vector<double>& values) {
     const MeanAndSpread s = spread_of(values);
     if (!std::isfinite(s.mean)) return;
-    out.x.push_back(x);
-    out.y.push_back(s.mean);
-    out.lower95.push_back(s.mean - 1.96 * s.spread);
-    out.upper95.push_back(s.mean + 1.96 * s.spread);
+    const PredictedValue range = s.range95();
+    out.x.push_back(x), out.y.push_back(range.value);
+    out.lower95.push_back(range.lower95), out.upper95.push_back(range.upper95);
   };
   if (view == RunView::loop) {  // the same phases of the slip
     for (std::size_t k = 0; k < draws.front().x.size(); ++k) {
@@ -131,7 +130,7 @@ PredictedCurves::OfModel band_of(const std::vector<RunCurve>& draws, RunView vie
 
 std::vector<Prediction> predict_measures(const SimulatedDraws& draws, std::size_t last) {
   std::vector<Prediction> out;
-  const std::vector<RunMeasure>& measures = run_measures();
+  const std::vector<MotionMeasureInfo>& measures = run_measures();
   std::vector<std::vector<std::vector<double>>> values(draws.size());  // [model][draw][measure]
   for (std::size_t m = 0; m < draws.size(); ++m) {
     for (const auto& runs : draws[m]) {
@@ -145,8 +144,7 @@ std::vector<Prediction> predict_measures(const SimulatedDraws& draws, std::size_
       std::vector<double> own;
       for (const auto& draw : model) own.push_back(draw[k]);
       spreads.push_back(spread_of(own));
-      const MeanAndSpread& s = spreads.back();
-      one.models.push_back({s.mean, s.mean - 1.96 * s.spread, s.mean + 1.96 * s.spread});
+      one.models.push_back(spreads.back().range95());
     }
     one.apart = apart(spreads);
     if (one.apart > 0) out.push_back(std::move(one));

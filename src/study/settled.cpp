@@ -9,9 +9,9 @@
 #include <optional>
 
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/oscillator/smoothed.hpp"
 #include "tribofit/oscillator/steady_sliding.hpp"
 #include "tribofit/output/digits.hpp"
+#include "tribofit/study/smoothed.hpp"
 
 namespace tribofit {
 
@@ -177,10 +177,10 @@ bool Settling::judge_cycles(const std::vector<SeenCycle>& cycles) {
   }
   measure(mean);
   out_.seen = fmt::format(
-      "stick-slip that does not repeat itself: over the last {} cycles of {} s the period goes from {} to "
-      "{} s, peak-to-peak from {} to {} mm",
-      late.size(), general(out_.simulated, 3), general(least.period, 6), general(most.period, 6),
-      general(1e3 * least.peak_to_peak, 6), general(1e3 * most.peak_to_peak, 6));
+      "stick-slip that does not repeat itself: over the last {} cycles of {} s the period goes from {} to {} s, "
+      "peak-to-peak from {} to {} mm",
+      late.size(), general(out_.simulated, 3), general(least.period), general(most.period),
+      general(1e3 * least.peak_to_peak), general(1e3 * most.peak_to_peak));
   return false;
 }
 

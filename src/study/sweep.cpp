@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "step_counter.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/oscillator/steady_sliding.hpp"
-#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 

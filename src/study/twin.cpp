@@ -8,17 +8,18 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <numbers>
 #include <utility>
 
 #include "fit_machines.hpp"
 #include "motion_measures.hpp"
 #include "simulated_run.hpp"
+#include "statistics/reductions.hpp"
+#include "step_counter.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/oscillator/sensors.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
-#include "tribofit/statistics/parallel.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 
 namespace tribofit {
@@ -74,9 +75,7 @@ Drive drive_of(const Machine& machine, const RecordedConditions& recorded) {
   }
   if (!motion.temperature.empty()) {
     drive.temperature = follow(motion.temperature, motion.step, grid);
-    double sum = 0;
-    for (const double x : motion.temperature) sum += x;
-    drive.mean_temperature = sum / static_cast<double>(motion.temperature.size());
+    drive.mean_temperature = mean_of(motion.temperature);
   }
   return drive;
 }
@@ -172,8 +171,7 @@ double portrait_distance(const std::vector<Estimate>& measured, const Prediction
 
 std::vector<MotionMeasures> simulate_column(const IdentifiedMachine& identified, const Sensors& sensors,
                                             const RecordedConditions& recorded, std::size_t count,
-                                            const TwinOptions& options, const std::function<void()>& done,
-                                            BlockMotion& shown) {
+                                            const TwinOptions& options, StepCounter& counter, BlockMotion& shown) {
   const std::vector<Machine> machines = draws_of(identified.machine, identified.covariance, count, options.seed);
   std::vector<MotionMeasures> out(machines.size());
   run_tasks(machines.size(), options.threads, [&](std::size_t k) {
@@ -182,7 +180,7 @@ std::vector<MotionMeasures> simulate_column(const IdentifiedMachine& identified,
                                   k == 0 ? &shown : nullptr);
     } catch (const InputError&) {  // numbers that cannot be simulated: one prediction less
     }
-    done();
+    counter.step();
   });
   return out;
 }
@@ -291,18 +289,12 @@ Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::
   if (!machines.empty()) twin.measured = block_motion(motion, segmentation, compliance(machines.back().machine));
   const RecordedConditions recorded(motion);
   measured_all();
-  std::mutex mutex;
-  std::size_t finished = 0;
+  std::function<void(double)> say;
+  if (options.progress) say = [&](double part) { options.progress("simulating twins", part); };
+  StepCounter counter(machines.size() * twin.simulations, say);
   for (std::size_t c = 0; c < machines.size(); ++c) {
-    const auto done = [&] {
-      const std::lock_guard<std::mutex> lock(mutex);
-      ++finished;
-      if (!options.progress) return;
-      options.progress("simulating twins",
-                       static_cast<double>(finished) / static_cast<double>(machines.size() * twin.simulations));
-    };
-    const auto simulations =
-        simulate_column(machines[c], sensors, recorded, twin.simulations, options, done, twin.simulated.emplace_back());
+    const auto simulations = simulate_column(machines[c], sensors, recorded, twin.simulations, options, counter,
+                                             twin.simulated.emplace_back());
     twin.columns.push_back(fits[c].model.name());
     add_column(measured, simulations, twin);
   }

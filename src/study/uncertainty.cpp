@@ -67,7 +67,7 @@ std::vector<Machine> draws_of(const Machine& machine, const MachineCovariance& c
   return out;
 }
 
-Interval95 interval95_of(std::vector<double> values) {
+Interval interval95_of(std::vector<double> values) {
   const std::size_t all = values.size();
   std::erase_if(values, [](double x) { return std::isnan(x); });
   const double missing = static_cast<double>(all - values.size());

@@ -13,14 +13,11 @@
 #include "hand_measurements.hpp"
 #include "limits.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/statistics/distributions.hpp"
 
 namespace tribofit {
 
 namespace {
-
-double normal_tail_below(double z) {
-  return 0.5 * std::erfc(-z / std::sqrt(2.0));
-}
 
 /// Chance that the p-value of another record of the same truth is below `level`, from those of some draws. cycles: so
 /// many times as many as the draws had.
@@ -30,7 +27,7 @@ double chance_of_p(const std::vector<Evidence>& draws, double level, double cycl
   double sum = 0;
   for (const Evidence& draw : draws) sum += z_of(draw.p_value);
   const auto n = static_cast<double>(draws.size());
-  return normal_tail_below((std::sqrt(cycles) * sum / n - z_of(level)) / std::sqrt(1 + 1 / n));
+  return normal_below((std::sqrt(cycles) * sum / n - z_of(level)) / std::sqrt(1 + 1 / n));
 }
 
 /// Chance that another record of the same truth distinguishes it from a rival that was `now` behind before the run.
@@ -57,7 +54,7 @@ double chance_to_distinguish(const std::vector<Evidence>& draws, std::size_t riv
   const double mean = now + longer * added;
   const double least = std::max(diagnosis::limits::kDistinguishable, size / n);
   const double beyond = (mean - least) / std::sqrt(variance * (1 + longer / n));
-  return (all - n + n * normal_tail_below(beyond)) / all;
+  return (all - n + n * normal_below(beyond)) / all;
 }
 
 /// The records as they are, then the simulated ones.
@@ -81,7 +78,7 @@ double chance_of_all(const std::vector<double>& chances) {
   for (double common = -kEnd; common <= kEnd; common += kStep) {
     const double weight = std::exp(-0.5 * common * common);
     double all = weight;
-    for (const double z : beyond) all *= normal_tail_below(std::numbers::sqrt2 * z + common);
+    for (const double z : beyond) all *= normal_below(std::numbers::sqrt2 * z + common);
     sum += all;
     weights += weight;
   }
@@ -108,7 +105,7 @@ double calibrated_chance(double expected) {
 }
 
 double chance_beyond(double sigmas) {
-  return normal_tail_below(sigmas - diagnosis::limits::kDeclaredSigmas);
+  return normal_below(sigmas - diagnosis::limits::kDeclaredSigmas);
 }
 
 Evidence weigh_draw(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const Experiment& experiment,

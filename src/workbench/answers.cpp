@@ -5,9 +5,9 @@
 
 #include "choice_json.hpp"
 #include "report/numbers.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/ingest/units.hpp"
-#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit::workbench {
 

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "report/diagnosis_sentences.hpp"
+#include "tribofit/execution/stop.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/report/plan.hpp"
-#include "tribofit/statistics/stop.hpp"
 #include "tribofit/study/plan.hpp"
 
 namespace tribofit::workbench {

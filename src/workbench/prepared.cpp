@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/execution/parallel.hpp"
 
 namespace tribofit::workbench {
 

@@ -15,8 +15,8 @@
 #include "connections.hpp"
 #include "guard.hpp"
 #include "served_page.hpp"
+#include "tribofit/execution/stop.hpp"
 #include "tribofit/report/page.hpp"
-#include "tribofit/statistics/stop.hpp"
 
 namespace tribofit {
 

@@ -16,9 +16,9 @@
 #include "diagnosis_run.hpp"
 #include "prepared.hpp"
 #include "report/report_parts.hpp"
+#include "tribofit/execution/stop.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/pipeline.hpp"
-#include "tribofit/statistics/stop.hpp"
 #include "tribofit/version.hpp"
 
 namespace tribofit {

@@ -9,8 +9,8 @@
 
 #include "../fit/synthetic.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
+#include "tribofit/execution/stop.hpp"
 #include "tribofit/friction/effects/all.hpp"
-#include "tribofit/statistics/stop.hpp"
 
 namespace {
 

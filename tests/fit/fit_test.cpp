@@ -384,7 +384,7 @@ TEST(Uncertainty, MeanErrorCovers) {
         value = noise();
         mean += value / 100;
       }
-      const MeanError error = standard_error_of_mean(x);
+      const Estimate error = standard_error_of_mean(x);
       covered += std::abs(mean) <= t_quantile_95(error.degrees_of_freedom) * error.std_error ? 1 : 0;
     }
     const double rate = covered / double(kSeries);

@@ -107,7 +107,7 @@ TEST(Distortions, AZeroIsFoundAndTakenOff) {
         trace = slowed(std::move(trace), s);
         if (recorded) trace.disc_speed.assign(trace.size(), trace.conditions.speed.value);
         const Motion motion = compute_motion(std::move(trace));
-        const UndoneDistortion& found = motion.velocity_zero;
+        const Estimate& found = motion.velocity_zero;
         EXPECT_LT(std::abs(found.value - zero / s), 4 * found.std_error) << s << " " << zero << " " << recorded;
         EXPECT_LT(found.std_error, 2e-5 / s);
         EXPECT_LT(std::abs(motion.plateau_velocity), 4 * found.std_error);
@@ -145,7 +145,7 @@ TEST(Distortions, LowPassesOfFirstOrderAreFoundAndUndone) {
         add_noise(trace);
         const Motion motion = compute_motion(slowed(std::move(trace), s));
         const double truth = tau * 5e-5 * s;
-        const UndoneDistortion &v = motion.velocity_low_pass, &mu = motion.friction_low_pass;
+        const Estimate &v = motion.velocity_low_pass, &mu = motion.friction_low_pass;
         // A slow one is seen in the tail alone, which needs no motion to be known.
         EXPECT_NEAR(v.value, truth, (corner < 600 ? 0.004 : 0.02) * truth + 3 * v.std_error) << corner << " " << s;
         if (both) {

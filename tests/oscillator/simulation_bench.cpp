@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "rigs.hpp"
-#include "tribofit/oscillator/smoothed.hpp"
+#include "tribofit/study/smoothed.hpp"
 
 namespace tribofit {
 namespace {

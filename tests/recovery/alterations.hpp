@@ -23,7 +23,7 @@ using Random = std::mt19937_64;
 
 /// A distortion that is undone, and its true value.
 struct Undone {
-  UndoneDistortion Motion::*found;
+  Estimate Motion::*found;
   double truth;
 };
 
@@ -245,7 +245,7 @@ inline std::function<void(Trace&, Random&)> then_at(double rpm) {
 
 /// First-order low-passes, which are undone.
 inline std::vector<Alteration> low_passes() {
-  const auto lag = [](UndoneDistortion Motion::*found, double corner) {
+  const auto lag = [](Estimate Motion::*found, double corner) {
     return Undone{found, 1 / (2 * std::numbers::pi * corner)};
   };
   std::vector<Alteration> list;

@@ -14,7 +14,7 @@
 #include "altered_cases.hpp"
 #include "joined_pairs.hpp"
 #include "rates.hpp"
-#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/execution/parallel.hpp"
 
 namespace {
 

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "hidden_effects.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/friction/effects/all.hpp"
-#include "tribofit/statistics/parallel.hpp"
 
 namespace {
 

@@ -6,9 +6,9 @@
 #include <exception>
 #include <mutex>
 
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/pipeline.hpp"
-#include "tribofit/statistics/parallel.hpp"
 
 namespace recovery {
 

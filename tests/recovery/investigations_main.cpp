@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "investigations.hpp"
-#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/execution/parallel.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "twin.hpp"
 
 namespace {

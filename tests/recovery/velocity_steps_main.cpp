@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "fit/contact_apart.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/fit/rate_state.hpp"
-#include "tribofit/statistics/parallel.hpp"
 
 using namespace tribofit;
 

@@ -1,4 +1,4 @@
-#include "tribofit/oscillator/fingerprint.hpp"
+#include "tribofit/study/fingerprint.hpp"
 #include "tribofit/report/terminal.hpp"
 /// Pictures of fingerprints fit the page.
 

@@ -15,7 +15,7 @@ using ::testing::Lt;
 
 TEST(BandOverCycles, IsTheSpreadOfCyclesAndNotOfSamples) {
   // Levels of 101 cycles are 0 to 100; samples of a cycle scatter by 50 about its level, evenly.
-  BandOverCycles band(0, 10, 5);
+  BinnedSamples band(0, 10, 5);
   for (int cycle = 0; cycle <= 100; ++cycle) {
     for (int i = 0; i < 40; ++i) band.add(0.25 * i + 0.1, cycle + (i % 2 == 0 ? 50 : -50));
     band.end_cycle();
@@ -29,7 +29,7 @@ TEST(BandOverCycles, IsTheSpreadOfCyclesAndNotOfSamples) {
 }
 
 TEST(BandOverCycles, LeavesOutBinsThatHardlyAnyCycleReaches) {
-  BandOverCycles band(0, 2, 2);
+  BinnedSamples band(0, 2, 2);
   for (int cycle = 0; cycle < 100; ++cycle) {
     band.add(0.5, 1);
     if (cycle < 9) band.add(1.5, 7);
@@ -41,9 +41,9 @@ TEST(BandOverCycles, LeavesOutBinsThatHardlyAnyCycleReaches) {
 }
 
 TEST(ExtremesInBins, KeepTheWorstSample) {
-  ExtremesInBins bins(0, 1, 10);
+  BinnedSamples bins(0, 1, 10);
   for (int i = 0; i < 1000; ++i) bins.add(1e-3 * (i + 0.5), i == 555 ? 0.5 : 0.01);
-  const BinExtremes drawn = bins.result();
+  const BinExtremes drawn = bins.extremes();
   ASSERT_EQ(drawn.at.size(), 10u);
   EXPECT_EQ(drawn.largest[5], 0.5);
   EXPECT_NEAR(drawn.mean[5], (99 * 0.01 + 0.5) / 100, 1e-12);

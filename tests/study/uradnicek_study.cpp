@@ -6,10 +6,10 @@
 #include "machines.hpp"
 #include "published_studies.hpp"
 #include "roots.hpp"
-#include "tribofit/oscillator/smoothed.hpp"
 #include "tribofit/oscillator/steady_sliding.hpp"
 #include "tribofit/statistics/spectrum.hpp"
 #include "tribofit/study/critical_speed.hpp"
+#include "tribofit/study/smoothed.hpp"
 
 namespace tribofit::studies {
 

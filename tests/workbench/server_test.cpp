@@ -14,9 +14,9 @@
 
 #include "lagging.hpp"
 #include "running_server.hpp"
+#include "tribofit/execution/stop.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/report/page.hpp"
-#include "tribofit/statistics/stop.hpp"
 #include "workbench/guard.hpp"
 
 namespace tribofit {

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "lagging.hpp"
+#include "tribofit/execution/stop.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/statistics/stop.hpp"
 #include "workbench/choice_json.hpp"
 
 namespace tribofit {

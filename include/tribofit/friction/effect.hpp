@@ -7,6 +7,7 @@
 #include "tribofit/friction/law.hpp"
 #include "tribofit/friction/parameter.hpp"
 #include "tribofit/friction/slip.hpp"
+#include "tribofit/statistics/estimate.hpp"
 
 namespace tribofit {
 
@@ -80,7 +81,7 @@ struct Motion;
 ///
 /// What kinematics/ and segmentation/ find and undo before any fit:
 ///
-///   static FoundBeforeFit found_before_fit(const Motion&, const FoundValue& load_coupling)
+///   static FoundBeforeFit found_before_fit(const Motion&, const Estimate& load_coupling)
 
 /// Channels that an effect needs to see.
 struct Channels {
@@ -128,7 +129,7 @@ enum class InstrumentValue {
   vibrometer_delay,  ///< vibrometer.delay
 };
 
-/// Over which variable the sketch of an effect is drawn (see oscillator/fingerprint.hpp).
+/// Over which variable the sketch of an effect is drawn (see study/fingerprint.hpp).
 enum class SketchView {
   loop,            ///< what the bare law leaves over v_r, both branches of one slip
   curve,           ///< mu over v_r, with the effect and without
@@ -220,15 +221,10 @@ struct SpeedSwing {
   double amplitude = 0, order = 1, phase = 0;  ///< [1], [1], [rad]
 };
 
-/// A value with its standard error, SI.
-struct FoundValue {
-  double value = 0, std_error = 0;
-};
-
 /// The parameters of an effect that was found and undone before any fit, and where it showed, as one sentence without a
 /// full stop. No values: it was not found.
 struct FoundBeforeFit {
-  std::vector<FoundValue> values = {};
+  std::vector<Estimate> values = {};
   std::string_view reason = {};
 };
 

@@ -10,6 +10,7 @@
 #include "tribofit/ingest/instruments.hpp"
 #include "tribofit/ingest/trace.hpp"
 #include "tribofit/kinematics/health.hpp"
+#include "tribofit/statistics/estimate.hpp"
 
 namespace tribofit {
 
@@ -28,12 +29,6 @@ enum class PlateauCorrection {
   none,    ///< left as it is
   radius,  ///< the radius (or the speed) is another: omega r times the ratio
   gain,    ///< the vibrometer reads too much or too little: v_b over the ratio
-};
-
-/// What a channel did to its reading, found in the record and put right: its size with its standard error, SI. 0: none.
-struct UndoneDistortion {
-  double value = 0, std_error = 0;
-  bool any() const { return value != 0; }
 };
 
 /// Which records say whether the friction channel is a low-pass.
@@ -97,16 +92,17 @@ struct Motion {
   double velocity_noise = 0;    ///< standard deviation of v_r in stick [m/s]; from local roughness where nothing sticks
   double plateau_velocity = 0;  ///< robust centre of v_r in stick [m/s]; 0 where nothing sticks
   double high_pass = 0;         ///< corner of the vibrometer high-pass that was undone [Hz]; 0: none
-  double high_pass_std_error = 0;      ///< [Hz]
-  bool friction_drives = false;        ///< it is negative in slip though its sign is right: its zero is not
-  UndoneDistortion velocity_zero;      ///< that was taken off v_b [m/s]
-  UndoneDistortion velocity_low_pass;  ///< time constant of a first-order low-pass that was undone [s]
+  double high_pass_std_error = 0;  ///< [Hz]
+  bool friction_drives = false;    ///< it is negative in slip though its sign is right: its zero is not
+  // What channels did to their readings, found in the record and put right; 0: none.
+  Estimate velocity_zero;      ///< that was taken off v_b [m/s]
+  Estimate velocity_low_pass;  ///< time constant of a first-order low-pass that was undone [s]
   /// The same of friction [s], which stays as it was read: a law is evaluated and then filtered.
-  UndoneDistortion friction_low_pass;
+  Estimate friction_low_pass;
   FilterSource friction_filter_source = FilterSource::unknown;
-  UndoneDistortion compression;       ///< c of v_meas = v_b (1 - c (v_b/fastest_velocity)^2), undone [1]
+  Estimate compression;               ///< c of v_meas = v_b (1 - c (v_b/fastest_velocity)^2), undone [1]
   double fastest_velocity = 0;        ///< largest |v_b|, where that was undone [m/s]
-  UndoneDistortion clock_drift;       ///< by which friction fell behind the velocity, over time [1]
+  Estimate clock_drift;               ///< by which friction fell behind the velocity, over time [1]
   bool sticks = false;                ///< the trace has a plateau of stick
   StickRule stick;                    ///< as the user said
   double clock_offset_std_error = 0;  ///< as in Trace [s]; NaN: not known
@@ -150,7 +146,7 @@ struct MotionOptions {
   StickRule stick = {};
   int threads = 1;  ///< that look at friction and velocity side by side; 0: as many as there are
   /// Of the friction channel, as other runs of the same sensor show it [s] (0: they show none); nothing: looked for.
-  std::optional<UndoneDistortion> friction_low_pass = {};
+  std::optional<Estimate> friction_low_pass = {};
 };
 
 /// Computes the motion: declared instrument corrections first, then high-pass, zero and speed, v_r, health. Samples

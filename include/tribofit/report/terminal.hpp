@@ -11,7 +11,7 @@
 
 namespace tribofit {
 
-struct Fingerprint;  // oscillator/fingerprint.hpp
+struct Fingerprint;  // study/fingerprint.hpp
 
 struct TerminalOptions : ReportOptions {
   bool colour = false;

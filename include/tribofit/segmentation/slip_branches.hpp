@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -35,6 +36,17 @@ struct BranchBand {
 };
 std::vector<BranchBand> bands_over_speed(const Motion& motion, const std::vector<SlipBranch>& branches,
                                          std::span<const double> values, std::size_t bins);
+
+/// The first number up to `last` that will do, as near to its half as they come.
+template <class WillDo>
+std::optional<std::size_t> nearest_to_middle(std::size_t last, const WillDo& will_do) {
+  const std::size_t middle = last / 2;
+  for (std::size_t off = 0; off <= last; ++off) {
+    if (middle + off <= last && will_do(middle + off)) return middle + off;
+    if (off <= middle && will_do(middle - off)) return middle - off;
+  }
+  return std::nullopt;
+}
 
 /// The first of `count` cycles in a row that are whole and selected, as near to the middle of the record as they come;
 /// else the middle ones. There are at least `count` cycles.

@@ -20,8 +20,8 @@ struct Spectrum {
   std::vector<double> amplitude;  ///< amplitude[k] of the sine at k * bin_width, in the signal's unit
 };
 
-/// Amplitude spectrum (Hann window) of `signal` sampled every `step` seconds. The same for any number of threads.
-Spectrum amplitude_spectrum(std::span<const double> signal, double step, int threads = 1);
+/// Amplitude spectrum (Hann window) of `signal` sampled every `step` seconds.
+Spectrum amplitude_spectrum(std::span<const double> signal, double step);
 
 /// The same up to the frequency `top` [Hz] (at most half the rate), of means over neighbours where that is far below
 /// the rate, which costs less; what the means take away is given back. Empty for less than 16 samples.

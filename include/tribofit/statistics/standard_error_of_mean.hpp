@@ -1,18 +1,13 @@
 #pragma once
 
-#include <cstddef>
 #include <span>
 #include <vector>
 
+#include "tribofit/statistics/estimate.hpp"
+
 namespace tribofit {
 
-/// A long-run standard deviation of the mean of a series, with the degrees of freedom of its t distribution.
-struct MeanError {
-  double std_error = 0;
-  double degrees_of_freedom = 1;
-};
-
-/// Standard error of the mean of a series whose neighbours may be correlated (cycles under wandering scatter).
+/// Mean of a series with its standard error, where neighbours may be correlated (cycles under wandering scatter).
 ///
 /// The long-run variance is taken from the lowest cosine frequencies (equal-weighted cosine estimator with
 /// nu = 0.4 n^(2/3), E. Lazarus, D. J. Lewis, J. H. Stock, M. W. Watson, J. Bus. Econ. Stat. 36 (2018) 541,
@@ -27,19 +22,12 @@ struct MeanError {
 /// prewhitened series (F test with 2 degrees of freedom, below 0.001 over all lines) are fitted and taken out first.
 /// Each adds in squares the root mean square, over its phase, of what it leaves in the mean of the record, and takes
 /// two of the nu degrees of freedom where it lies among their frequencies.
-MeanError standard_error_of_mean(std::span<const double> series);
-
-/// Mean of a series with its standard error.
-struct Estimate {
-  double value = 0, std_error = 0;  ///< NaN where they are not known
-  double degrees_of_freedom = 1;    ///< of the t distribution of its error
-};
+Estimate standard_error_of_mean(std::span<const double> series);
 
 /// Mean of independent values with its plain standard error, from their scatter: NaN for fewer than two.
 Estimate mean_of_independent(std::span<const double> values);
 
-/// Mean of the values that are not NaN, and its standard_error_of_mean(). The value is NaN where there are none, its
-/// error where there are fewer than three.
+/// The same as standard_error_of_mean() of the values that are not NaN. The mean is NaN where there are none.
 Estimate mean_with_error(std::vector<double> values);
 
 }  // namespace tribofit

@@ -27,10 +27,10 @@ struct SpeedStudy {
   std::vector<Settled> up, down;    ///< begun in stick, and in steady sliding
   std::vector<double> growth_rate;  ///< of a small vibration about steady sliding [1/s]
   CriticalSpeed critical;
-  Interval95 linear_interval;                      ///< of the last of critical.linear [m/s]
-  Interval95 vanishes_interval, returns_interval;  ///< of critical.stick_vanishes and stick_returns [m/s]
-  Settled own;                                     ///< at the machine's own speed
-  std::vector<Interval95> own_intervals;           ///< of its measures, in the order of measures()
+  Interval linear_interval;                      ///< of the last of critical.linear [m/s]
+  Interval vanishes_interval, returns_interval;  ///< of critical.stick_vanishes and stick_returns [m/s]
+  Settled own;                                   ///< at the machine's own speed
+  std::vector<Interval> own_intervals;           ///< of its measures, in the order of measures()
 };
 
 struct SpeedStudyOptions {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tribofit/oscillator/machine.hpp"
+#include "tribofit/statistics/estimate.hpp"
 
 namespace tribofit {
 
@@ -23,11 +24,8 @@ struct MachineCovariance {
 std::vector<Machine> draws_of(const Machine& machine, const MachineCovariance& covariance, std::size_t count,
                               std::uint64_t seed = 1);
 
-/// 2.5 % and 97.5 % quantile of values, in their unit; both NaN: not known.
-struct Interval95 {
-  double lower95 = 0, upper95 = 0;
-};
-/// Of the values that are not NaN. Both ends are NaN where there are none or more than a tenth of `values` is NaN.
-Interval95 interval95_of(std::vector<double> values);
+/// 2.5 % and 97.5 % quantile of the values that are not NaN, in their unit. Both ends are NaN where there are none or
+/// more than a tenth of `values` is NaN.
+Interval interval95_of(std::vector<double> values);
 
 }  // namespace tribofit

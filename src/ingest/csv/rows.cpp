@@ -13,9 +13,9 @@
 #include "ingest/limits.hpp"
 #include "ingest/memory.hpp"
 #include "row_parser.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
-#include "tribofit/statistics/parallel.hpp"
 
 namespace tribofit {
 namespace {

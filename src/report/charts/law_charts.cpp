@@ -12,7 +12,7 @@
 #include "statistics/thinning.hpp"
 #include "tribofit/campaign/figures.hpp"
 #include "tribofit/diagnosis/residual_map.hpp"
-#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/execution/parallel.hpp"
 
 namespace tribofit {
 namespace {
@@ -261,7 +261,7 @@ std::vector<Chart> error_charts(const DrawnTrace& d) {
       error_chart(d, "error-speed", "Relative error over speed", {"relative velocity |v_{r}|", "mm/s"}),
       error_chart(d, "error-time", "Relative error over time", {"time", "s"})};
   for (std::size_t k = 0; k < d.models.size(); ++k) {
-    ExtremesInBins speed(0, d.fastest, chart_detail.error_bins),
+    BinnedSamples speed(0, d.fastest, chart_detail.error_bins),
         time(m.time.front(), m.time.back(), chart_detail.time_bins);
     for (const SlipBranch& piece : d.pieces) {
       for (std::size_t i = piece.samples.begin; i < piece.samples.end; ++i) {
@@ -270,8 +270,8 @@ std::vector<Chart> error_charts(const DrawnTrace& d) {
         time.add(m.time[i], error);
       }
     }
-    add_errors(curve_name(*d.models[k]), k, speed.result(), charts[0]);
-    add_errors(curve_name(*d.models[k]), k, time.result(), charts[1]);
+    add_errors(curve_name(*d.models[k]), k, speed.extremes(), charts[0]);
+    add_errors(curve_name(*d.models[k]), k, time.extremes(), charts[1]);
   }
   if (m.is_points()) charts.pop_back();
   if (d.trace.segmentation.kind != MotionKind::stick_slip) return charts;

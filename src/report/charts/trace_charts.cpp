@@ -10,7 +10,7 @@
 #include "report/charts/styles.hpp"
 #include "report/numbers.hpp"
 #include "statistics/thinning.hpp"
-#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/execution/parallel.hpp"
 #include "tribofit/statistics/spectrum.hpp"
 
 namespace tribofit {

@@ -10,23 +10,23 @@ namespace tribofit {
 namespace {
 
 /// "[1.2, 1.4]" in `unit`; empty where it is not known.
-std::string range_text(const Interval95& range, double unit) {
-  if (std::isnan(range.lower95)) return "";
-  return fmt::format("[{}, {}]", significant(range.lower95 / unit, 4), significant(range.upper95 / unit, 4));
+std::string range_text(const Interval& range, double unit) {
+  if (std::isnan(range.lower)) return "";
+  return fmt::format("[{}, {}]", significant(range.lower / unit, 4), significant(range.upper / unit, 4));
 }
 
-Json range_json(const Interval95& range, double unit) {
-  return interval_json(range.lower95 / unit, range.upper95 / unit);
+Json range_json(const Interval& range, double unit) {
+  return interval_json(range.lower / unit, range.upper / unit);
 }
 
 /// Where sliding gains or loses its stability, where stick vanishes and comes back, with their 95 % ranges.
 std::vector<std::string> critical_sentences(const StudiedMachine& studied, const SpeedStudy& study) {
   const CriticalSpeed& c = study.critical;
   std::vector<std::string> out;
-  const auto add = [&](const char* what, double value, const Interval95& range) {
+  const auto add = [&](const char* what, double value, const Interval& range) {
     if (std::isnan(value)) return;
     std::string sentence = fmt::format("{} {}", what, velocity_text(value, studied.machine));
-    if (!std::isnan(range.lower95)) sentence += ", " + range_text(range, kMillimetre) + " mm/s (95 %)";
+    if (!std::isnan(range.lower)) sentence += ", " + range_text(range, kMillimetre) + " mm/s (95 %)";
     out.push_back(std::move(sentence));
   };
   for (const double v : c.linear) {
@@ -34,7 +34,7 @@ std::vector<std::string> critical_sentences(const StudiedMachine& studied, const
     const char* what =
         c.stable_at_highest ? "steady sliding loses its stability below" : "steady sliding is unstable from";
     add(last ? what : "steady sliding changes its stability at", v,
-        last ? study.linear_interval : Interval95{std::nan(""), std::nan("")});
+        last ? study.linear_interval : Interval{std::nan(""), std::nan("")});
   }
   const std::string searched =
       fmt::format("from {} to {} mm/s", significant(1e3 * c.lowest, 3), significant(1e3 * c.highest, 3));
@@ -120,9 +120,9 @@ void add_critical(const SpeedStudy& study, Chart& chart) {
 }
 
 /// The 95 % range of a critical speed, over all panels, with its numbers at the mark.
-void add_range(const Interval95& range, double at, Chart& chart) {
-  if (!std::isfinite(range.lower95) || !std::isfinite(range.upper95)) return;
-  chart.stretches.push_back({range.lower95 / kMillimetre, range.upper95 / kMillimetre, Shade::range});
+void add_range(const Interval& range, double at, Chart& chart) {
+  if (!std::isfinite(range.lower) || !std::isfinite(range.upper)) return;
+  chart.stretches.push_back({range.lower / kMillimetre, range.upper / kMillimetre, Shade::range});
   for (ChartMark& mark : chart.marks) {
     if (mark.upright && is_same_speed(mark.at * kMillimetre, at)) mark.text += " " + range_text(range, kMillimetre);
   }

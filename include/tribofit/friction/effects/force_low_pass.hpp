@@ -27,8 +27,8 @@ struct ForceLowPass {
     return info;
   }
 
-  static FoundBeforeFit found_before_fit(const Motion& motion, const FoundValue& /*load_coupling*/) {
-    const UndoneDistortion& tau = motion.friction_low_pass;
+  static FoundBeforeFit found_before_fit(const Motion& motion, const Estimate& /*load_coupling*/) {
+    const Estimate& tau = motion.friction_low_pass;
     if (!tau.any()) return {};
     const double corner = 1 / (2 * std::numbers::pi * tau.value);
     return {.values = {{corner, corner * tau.std_error / tau.value}},

@@ -23,7 +23,7 @@ struct LoadCoupling {
   }
 
   /// What the load channel shows within the cycles.
-  static FoundBeforeFit found_before_fit(const Motion& /*motion*/, const FoundValue& load_coupling) {
+  static FoundBeforeFit found_before_fit(const Motion& /*motion*/, const Estimate& load_coupling) {
     if (load_coupling.value == 0) return {};
     return {.values = {load_coupling},
             .reason = "the load channel follows friction within every cycle; that part was taken out of it"};

@@ -52,7 +52,7 @@ struct SpeedRipple {
                                      "or point the laser at the unloaded disc: a ripple of the speed shows there")}};
   }
 
-  static FoundBeforeFit found_before_fit(const Motion& motion, const FoundValue& /*load_coupling*/) {
+  static FoundBeforeFit found_before_fit(const Motion& motion, const Estimate& /*load_coupling*/) {
     const DiscRipple& ripple = motion.speed_ripple;
     if (!(ripple.amplitude > 0)) return {};
     return {.values = {{ripple.amplitude, ripple.amplitude_std_error},
@@ -87,7 +87,7 @@ struct VelocityGain {
             .sketch = {.view = SketchView::plateau, .values = {0.92}}};
   }
 
-  static FoundBeforeFit found_before_fit(const Motion& motion, const FoundValue& /*load_coupling*/) {
+  static FoundBeforeFit found_before_fit(const Motion& motion, const Estimate& /*load_coupling*/) {
     return found_on_plateau(motion);
   }
 
@@ -120,7 +120,7 @@ struct RadiusOffset {
                 "over speed is the gain, for vibrometer.gain of the instruments file; what is left is the radius")}};
   }
 
-  static FoundBeforeFit found_before_fit(const Motion& motion, const FoundValue& /*load_coupling*/) {
+  static FoundBeforeFit found_before_fit(const Motion& motion, const Estimate& /*load_coupling*/) {
     return found_on_plateau(motion);
   }
 
@@ -158,7 +158,7 @@ struct VelocityHighPass {
             .pairs = {looks_like<RadiusOffset>(stop_the_disc)}};
   }
 
-  static FoundBeforeFit found_before_fit(const Motion& motion, const FoundValue& /*load_coupling*/) {
+  static FoundBeforeFit found_before_fit(const Motion& motion, const Estimate& /*load_coupling*/) {
     if (!(motion.high_pass > 0)) return {};
     return {.values = {{motion.high_pass, motion.high_pass_std_error}}, .reason = kShownByPlateau};
   }

@@ -35,7 +35,7 @@ struct VelocityOffset {
             .sketch = {.view = SketchView::plateau, .values = {0.5}}};
   }
 
-  static FoundBeforeFit found_before_fit(const Motion& motion, const FoundValue& /*load_coupling*/) {
+  static FoundBeforeFit found_before_fit(const Motion& motion, const Estimate& /*load_coupling*/) {
     if (!motion.velocity_zero.any()) return {};
     return {.values = {{motion.velocity_zero.value, motion.velocity_zero.std_error}},
             .reason =
@@ -69,8 +69,8 @@ struct VelocityBandwidth {
             .sketch = {.view = SketchView::loop, .values = {200}}};
   }
 
-  static FoundBeforeFit found_before_fit(const Motion& motion, const FoundValue& /*load_coupling*/) {
-    const UndoneDistortion& tau = motion.velocity_low_pass;
+  static FoundBeforeFit found_before_fit(const Motion& motion, const Estimate& /*load_coupling*/) {
+    const Estimate& tau = motion.velocity_low_pass;
     if (!tau.any()) return {};
     const double corner = 1 / (2 * std::numbers::pi * tau.value);
     return {.values = {{corner, corner * tau.std_error / tau.value}},
@@ -102,7 +102,7 @@ struct VelocityCompression {
             .sketch = {.view = SketchView::curve, .values = {0.2}}};
   }
 
-  static FoundBeforeFit found_before_fit(const Motion& motion, const FoundValue& /*load_coupling*/) {
+  static FoundBeforeFit found_before_fit(const Motion& motion, const Estimate& /*load_coupling*/) {
     if (!motion.compression.any()) return {};
     return {.values = {{motion.compression.value, motion.compression.std_error}},
             .reason =
@@ -133,7 +133,7 @@ struct ClockDrift {
             .sketch = {.view = SketchView::time, .values = {2e-4}}};
   }
 
-  static FoundBeforeFit found_before_fit(const Motion& motion, const FoundValue& /*load_coupling*/) {
+  static FoundBeforeFit found_before_fit(const Motion& motion, const Estimate& /*load_coupling*/) {
     if (!motion.clock_drift.any()) return {};
     return {.values = {{motion.clock_drift.value, motion.clock_drift.std_error}},
             .reason =

@@ -2,6 +2,7 @@
 
 #include <exception>
 #include <functional>
+#include <utility>
 
 namespace tribofit {
 
@@ -19,25 +20,28 @@ struct Stopped : std::exception {
 class StopScope {
  public:
   /// asked: called from any thread that works within; once it has said yes it must not say no. Empty: never.
-  explicit StopScope(std::function<bool()> asked);
-  ~StopScope();
+  explicit StopScope(std::function<bool()> asked) : asked_(std::move(asked)), outer_(innermost_) { innermost_ = this; }
+  ~StopScope() { innermost_ = outer_; }
   StopScope(const StopScope&) = delete;
   StopScope& operator=(const StopScope&) = delete;
 
   bool says_stop() const { return (asked_ && asked_()) || (outer_ != nullptr && outer_->says_stop()); }
 
   /// The innermost scope of this thread; nullptr: nothing stops it.
-  static const StopScope* current();
+  static const StopScope* current() { return innermost_; }
   /// Puts a thread that helps another under the scope of that other, which outlives it.
-  static void take_over(const StopScope* scope);
+  static void take_over(const StopScope* scope) { innermost_ = scope; }
 
  private:
+  static inline thread_local const StopScope* innermost_ = nullptr;
   std::function<bool()> asked_;
   const StopScope* outer_;
 };
 
 /// Whether the work of this thread is to stop.
-bool stop_asked();
+inline bool stop_asked() {
+  return StopScope::current() != nullptr && StopScope::current()->says_stop();
+}
 
 /// Throws Stopped where it is.
 inline void stop_point() {

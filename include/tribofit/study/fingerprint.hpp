@@ -16,16 +16,16 @@ struct FingerprintAxis {
 
 /// A cloud of points of one name, SI.
 struct FingerprintCloud {
-  std::string name;
-  std::vector<double> x, y;
+  std::string name = {};
+  std::vector<double> x = {}, y = {};
 };
 
 /// Where the absence of an effect shows: a simulated record of the published 15 mm test, without noise, seen over the
 /// variable that distinguishes the effect from others.
 struct Fingerprint {
   FingerprintAxis x, y;
-  std::vector<FingerprintCloud> clouds;  ///< one or two
-  std::string conditions;                ///< what was simulated, e.g. "sigma = 0.001 s/mm"
+  std::vector<FingerprintCloud> clouds = {};  ///< one or two
+  std::string conditions = {};                ///< what was simulated, e.g. "sigma = 0.001 s/mm"
 };
 
 /// The fingerprint of an effect of the catalogue, from a simulation with a clearly visible size of it; an effect

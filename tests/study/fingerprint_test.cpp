@@ -1,5 +1,5 @@
 /// Fingerprints show what the equation of their effect says.
-#include "tribofit/oscillator/fingerprint.hpp"
+#include "tribofit/study/fingerprint.hpp"
 
 #include <gtest/gtest.h>
 

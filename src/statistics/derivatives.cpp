@@ -1,9 +1,9 @@
-#include "local_derivatives.hpp"
+#include "derivatives.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
+#include <numeric>
 
 #include "limits.hpp"
 #include "linear_algebra.hpp"
@@ -12,8 +12,6 @@
 namespace tribofit {
 
 namespace {
-
-using Weights = std::vector<double>;
 
 constexpr int kDegreeAbout = 4, kDegreeBeside = 3;
 
@@ -40,7 +38,7 @@ class PolynomialWindow {
   }
 
   /// Weights of the samples that give the derivative of an order at sample `at`, per sample distance.
-  Weights weights(int order, std::size_t at) const {
+  Eigen::RowVectorXd weights(int order, std::size_t at) const {
     const double x = abscissa(static_cast<double>(at)), scale = std::pow(2 / static_cast<double>(count_ - 1), order);
     Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(inverse_.rows());
     for (Eigen::Index k = order; k < inverse_.rows(); ++k) {
@@ -48,8 +46,7 @@ class PolynomialWindow {
       for (Eigen::Index j = 0; j < order; ++j) factor *= static_cast<double>(k - j);
       row(k) = factor * std::pow(x, static_cast<double>(k - order));
     }
-    const Eigen::RowVectorXd out = row * inverse_;
-    return {out.data(), out.data() + out.size()};
+    return row * inverse_;
   }
 
  private:
@@ -63,24 +60,19 @@ class PolynomialWindow {
 /// A position of a sample in its window, with what gives the signal and its derivatives there.
 struct Stencil {
   std::size_t at = 0;
-  std::array<Weights, 3> weights;      ///< by the order of the derivative
-  std::array<double, 3> noise_gain{};  ///< norms of the weights
+  std::array<Eigen::RowVectorXd, 3> weights;  ///< by the order of the derivative
+  std::array<double, 3> noise_gain{};         ///< norms of the weights
 
   Stencil(const PolynomialWindow& window, std::size_t where) : at(where) {
-    for (int order = 0; order < 3; ++order) {
-      const auto k = static_cast<std::size_t>(order);
-      weights[k] = window.weights(order, where);
-      for (const double w : weights[k]) noise_gain[k] += w * w;
-      noise_gain[k] = std::sqrt(noise_gain[k]);
+    for (std::size_t order = 0; order < 3; ++order) {
+      weights[order] = window.weights(static_cast<int>(order), where);
+      noise_gain[order] = weights[order].norm();
     }
   }
+  double operator()(std::size_t order, std::span<const double> signal, std::size_t i) const {
+    return weights[order].dot(Eigen::Map<const Eigen::RowVectorXd>(&signal[i - at], weights[order].size()));
+  }
 };
-
-double weighed_sum(const Weights& weights, const double* samples) {
-  double sum = 0;
-  for (std::size_t i = 0; i < weights.size(); ++i) sum += weights[i] * samples[i];
-  return sum;
-}
 
 /// What windows leave, by their first sample.
 std::vector<double> left_by_windows(std::span<const double> signal, const PolynomialWindow& window, std::size_t count) {
@@ -156,12 +148,64 @@ LocalDerivatives local_derivatives(std::span<const double> signal, double step, 
         least = left_beside[i - at] / kBetterWindow;
       }
     }
-    const double* samples = &signal[i - best->at];
-    out.value[i] = weighed_sum(best->weights[0], samples);
-    out.slope[i] = weighed_sum(best->weights[1], samples) / step;
-    out.second_derivative[i] = weighed_sum(best->weights[2], samples) / (step * step);
+    out.value[i] = (*best)(0, signal, i);
+    out.slope[i] = (*best)(1, signal, i) / step;
+    out.second_derivative[i] = (*best)(2, signal, i) / (step * step);
     out.slope_std_error[i] = widening * out.noise * best->noise_gain[1] / step;
     out.second_derivative_std_error[i] = widening * out.noise * best->noise_gain[2] / (step * step);
+  }
+  return out;
+}
+
+namespace {
+
+using Weights = std::vector<double>;
+
+Weights bell(std::size_t half) {
+  const double deviation = static_cast<double>(half) / 3;
+  Weights weights;
+  double sum = 0;
+  for (std::size_t i = 0; i <= 2 * half; ++i) {
+    const double x = (static_cast<double>(i) - static_cast<double>(half)) / deviation;
+    weights.push_back(std::exp(-0.5 * x * x));
+    sum += weights.back();
+  }
+  for (double& w : weights) w /= sum;
+  return weights;
+}
+
+/// Weights of a bell of the results of a stencil over three samples.
+Weights over(const Weights& bell, const std::array<double, 3>& stencil) {
+  Weights out(bell.size() + 2, 0.0);
+  for (std::size_t i = 0; i < bell.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) out[i + k] += bell[i] * stencil[k];
+  }
+  return out;
+}
+
+}  // namespace
+
+SmoothedDerivatives smoothed_derivatives(std::span<const double> signal, double step, std::size_t half) {
+  SmoothedDerivatives out;
+  out.reach = half + 1;
+  const Weights weights = bell(half);
+  const double squared = step * step;
+  const std::array<std::array<double, 3>, 3> stencils = {
+      {{1.0 / 12, 10.0 / 12, 1.0 / 12}, {-0.5 / step, 0, 0.5 / step}, {1 / squared, -2 / squared, 1 / squared}}};
+  const std::array means = {&out.value, &out.slope, &out.second_derivative};
+  const std::array gains = {&out.value_gain, &out.slope_gain, &out.second_derivative_gain};
+  for (std::size_t k = 0; k < stencils.size(); ++k) {
+    const Weights own = over(weights, stencils[k]);
+    *gains[k] = std::sqrt(std::inner_product(own.begin(), own.end(), own.begin(), 0.0));
+    means[k]->assign(signal.size(), 0.0);
+    if (k == 0) means[k]->assign(signal.begin(), signal.end());
+    for (std::size_t i = out.reach; i + out.reach < signal.size(); ++i)
+      (*means[k])[i] = std::inner_product(own.begin(), own.end(), &signal[i - out.reach], 0.0);
+  }
+  out.variance = squared / 6;  // of the triangle
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const double x = (static_cast<double>(i) - static_cast<double>(half)) * step;
+    out.variance += weights[i] * x * x;
   }
   return out;
 }

@@ -1,4 +1,4 @@
-#include "tribofit/oscillator/smoothed.hpp"
+#include "tribofit/study/smoothed.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,10 +5,11 @@
 #include <cstddef>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
+#include <vector>
 
-#include "tribofit/statistics/helper_threads.hpp"
-#include "tribofit/statistics/stop.hpp"
+#include "tribofit/execution/stop.hpp"
 
 namespace tribofit {
 
@@ -17,6 +18,27 @@ inline int available_threads() {
   static const int count = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   return count;
 }
+
+/// Threads that do the same work beside the caller's, under its StopScope, and are joined at the end of its life. One
+/// that the system does not start is one thread less.
+class HelperThreads {
+ public:
+  template <class Work>
+  HelperThreads(std::size_t count, Work work) {
+    threads_.reserve(count);
+    const auto help = [work, scope = StopScope::current()] {
+      StopScope::take_over(scope);
+      work();
+    };
+    try {
+      while (threads_.size() < count) threads_.emplace_back(help);
+    } catch (const std::system_error&) {  // the caller works in any case
+    }
+  }
+
+ private:
+  std::vector<std::jthread> threads_;
+};
 
 /// Runs task(0) ... task(count-1) on up to `threads` threads (0: as many as there are).
 /// Every task writes its own result, so results do not depend on the number of threads. The exception of the lowest

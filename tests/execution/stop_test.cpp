@@ -1,11 +1,11 @@
-#include "tribofit/statistics/stop.hpp"
+#include "tribofit/execution/stop.hpp"
 
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <vector>
 
-#include "tribofit/statistics/parallel.hpp"
+#include "tribofit/execution/parallel.hpp"
 
 namespace {
 

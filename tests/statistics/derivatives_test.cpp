@@ -1,4 +1,4 @@
-#include "statistics/local_derivatives.hpp"
+#include "statistics/derivatives.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,4 @@
-#include "tribofit/oscillator/smoothed.hpp"
-#include "limits.hpp"
+#include "tribofit/study/smoothed.hpp"
 
 #include <fmt/format.h>
 
@@ -10,10 +9,12 @@
 #include <optional>
 #include <string>
 
-#include "find_zero.hpp"
-#include "simulation_checks.hpp"
-#include "slip_flow.hpp"
-#include "stiff_integrator.hpp"
+#include "limits.hpp"
+#include "oscillator/find_zero.hpp"
+#include "oscillator/limits.hpp"
+#include "oscillator/rodas.hpp"
+#include "oscillator/simulation_checks.hpp"
+#include "oscillator/slip_flow.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/output/digits.hpp"
 
@@ -42,15 +43,16 @@ class SmoothedSimulation {
   SimulatedMotion run();
 
  private:
-  using State = StiffIntegrator::State;  ///< sqrt(k/m) x and x' [m/s both]
+  using Step = oscillator::RodasStep<double, 2>;
+  using State = Step::State;  ///< sqrt(k/m) x and x' [m/s both]
 
-  StiffIntegrator::Problem problem();
-  State initial_state() const;
   void advance(double until);
-  void find_events(double begin, const State& before);
+  double try_step(double h);
+  State state_at(double t) const;
+  void find_events();
   void begin_slip(double t, int direction);
   void end_slip(double t);
-  void sample(double until);
+  void sample();
   void write_sample(double t, const State& y);
   bool resolves_creep() const;
   std::size_t most_steps() const;
@@ -74,11 +76,15 @@ class SmoothedSimulation {
   const SmoothedOptions options_;
   const double crest_;
   Setup setup_;
+  const double absolute_tolerance_, most_step_;
   bool slipping_ = false;
   double stick_begin_ = 0, peak_speed_ = 0, slid_ = 0, last_lag_ = 0;
   std::size_t next_sample_ = 0, samples_ = 0, steps_ = 0;
   SimulatedMotion motion_;
-  StiffIntegrator integrator_;
+  State state_;
+  double begin_ = 0, time_ = 0;  ///< of the step just made, and its end
+  double next_step_;
+  Step step_;
 };
 
 SmoothedSimulation::SmoothedSimulation(const Rig& rig, const Drive& drive, const SmoothedLaw& law,
@@ -87,39 +93,22 @@ SmoothedSimulation::SmoothedSimulation(const Rig& rig, const Drive& drive, const
       options_(options),
       crest_(law.crest()),
       setup_(rig, drive, FrictionModel(ExponentialLaw{})),
-      integrator_(problem(), 0 - options.settle, initial_state(),
-                  {.relative_tolerance = options.tolerance,
-                   // Speeds of a slip are about that of the block when the drop of friction is let go.
-                   .absolute_tolerance =
-                       0.1 * options.tolerance * drive.mean_load * law.mu_brk / (rig.mass * rig.natural_frequency()),
-                   .max_step = 2 * std::numbers::pi / rig.natural_frequency() / 8}) {
-  const double begin = -options.settle;
-  const double gap = relative_velocity(begin, integrator_.state());
-  if (std::abs(gap) > threshold(begin)) begin_slip(kNaN, gap < 0 ? -1 : 1);
-  stick_begin_ = begin;
+      // Speeds of a slip are about that of the block when the drop of friction is let go.
+      absolute_tolerance_(0.1 * options.tolerance * drive.mean_load * law.mu_brk /
+                          (rig.mass * rig.natural_frequency())),
+      most_step_(2 * std::numbers::pi / rig.natural_frequency() / 8),
+      state_{setup_.natural_frequency * options.start.displacement, options.start.velocity},
+      time_(-options.settle),
+      next_step_(kFirstStep * most_step_) {
+  const double gap = relative_velocity(time_, state_);
+  if (std::abs(gap) > threshold(time_)) begin_slip(kNaN, gap < 0 ? -1 : 1);
+  stick_begin_ = time_;
   motion_.rate = options.rate;
   motion_.settled = options.settle > 0;
   motion_.radius = drive.radius;
   motion_.stated_speed = drive.speed.constant ? drive.speed.speed(0) : kNaN;
   motion_.mean_load = drive.mean_load;
   motion_.mean_temperature = drive.mean_temperature;
-}
-
-SmoothedSimulation::State SmoothedSimulation::initial_state() const {
-  return {setup_.natural_frequency * options_.start.displacement, options_.start.velocity};
-}
-
-StiffIntegrator::Problem SmoothedSimulation::problem() {
-  return {.rates = [this](double t, const State& y) -> State {
-            return {setup_.natural_frequency * y[1], acceleration(t, y)};
-          },
-          .derivatives = [this](double t, const State& y) -> StiffIntegrator::Derivatives {
-            const double frequency = setup_.natural_frequency, mass = setup_.rig.mass;
-            const double v = relative_velocity(t, y), slope = setup_.load(t) * law_.slope(v);
-            const double by_time = slope * setup_.disc_acceleration(t) + load_rate(t) * law_.friction(v);
-            return {.by_state = {{{0, frequency}, {-frequency, -(slope + setup_.rig.damping) / mass}}},
-                    .by_time = {0, by_time / mass}};
-          }};
 }
 
 /// dN/dt by a central difference over a small part of a period [N/s].
@@ -132,10 +121,10 @@ double SmoothedSimulation::load_rate(double t) const {
 SimulatedMotion SmoothedSimulation::run() {
   if (options_.settle > 0) advance(0);
   slid_ = 0;
-  last_lag_ = setup_.disc_travel(0) - integrator_.state()[0] / setup_.natural_frequency;
+  last_lag_ = setup_.disc_travel(0) - state_[0] / setup_.natural_frequency;
   samples_ = static_cast<std::size_t>(std::llround(options_.duration * options_.rate));
   if (samples_ > 0) {
-    write_sample(0, integrator_.state());
+    write_sample(0, state_);
     next_sample_ = 1;
   }
   advance(options_.duration);
@@ -145,55 +134,91 @@ SimulatedMotion SmoothedSimulation::run() {
 }
 
 void SmoothedSimulation::advance(double until) {
-  while (integrator_.time() < until) {
-    const double begin = integrator_.time();
-    const State before = integrator_.state();
+  const double least = 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(until), most_step_);
+  while (time_ < until) {
     if (!resolves_creep()) give_up("doubles do not resolve the creep of so sharp a law");
-    if (!integrator_.step(until)) give_up(integrator_.failure());
     if (++steps_ > most_steps()) give_up("too many steps");
-    find_events(begin, before);
-    sample(integrator_.time());
+    const double h = std::min(next_step_, until - time_), error = try_step(h);
+    const double change = oscillator::next_step_over_this(error);
+    // A step cut short by the end says nothing of longer ones.
+    const bool was_cut = error <= 1 && h < next_step_;
+    next_step_ = std::min(most_step_, was_cut ? std::max(next_step_, change * h) : change * h);
+    if (!(error <= 1)) {
+      if (next_step_ < least) give_up("the error stays too large down to steps of " + general(next_step_, 2) + " s");
+      continue;
+    }
+    begin_ = std::exchange(time_, until - time_ - h <= least ? until : time_ + h);
+    state_ = step_.after;
+    find_events();
+    sample();
   }
+}
+
+/// A step of length h from the present state; root mean square of its error over what is allowed.
+double SmoothedSimulation::try_step(double h) {
+  const double frequency = setup_.natural_frequency, mass = setup_.rig.mass;
+  const double v = relative_velocity(time_, state_), slope = setup_.load(time_) * law_.slope(v);
+  const double by_time = (slope * setup_.disc_acceleration(time_) + load_rate(time_) * law_.friction(v)) / mass;
+  const auto rates = [&](std::size_t stage, const State& y) -> State {
+    const double t = time_ + Step::place[stage] * h;
+    return {frequency * y[1], acceleration(t, y) + Step::by_time[stage] * h * by_time};
+  };
+  // I/(gamma h) - df/dy = ((d, -frequency), (frequency, d + damped)).
+  const double d = 1 / (Step::gamma * h), damped = (slope + setup_.rig.damping) / mass;
+  const double determinant = d * (d + damped) + frequency * frequency;
+  const auto solve = [&](const State& r) -> State {
+    return {((d + damped) * r[0] + frequency * r[1]) / determinant, (d * r[1] - frequency * r[0]) / determinant};
+  };
+  step_.take(state_, h, rates(0, state_), rates, solve);
+  double squares = 0;
+  for (std::size_t k = 0; k < state_.size(); ++k) {
+    const double size = std::max(std::abs(state_[k]), std::abs(step_.after[k]));
+    squares += std::pow(step_.error()[k] / (absolute_tolerance_ + options_.tolerance * size), 2) / 2;
+  }
+  return std::sqrt(squares);
+}
+
+/// Within the step just made.
+SmoothedSimulation::State SmoothedSimulation::state_at(double t) const {
+  return t < time_ ? step_.at((t - begin_) / (time_ - begin_)) : state_;
 }
 
 /// v_r of a stick is the small difference of two speeds; its rounding must not move the friction.
 bool SmoothedSimulation::resolves_creep() const {
-  const double rounding = std::numeric_limits<double>::epsilon() * std::abs(setup_.disc_velocity(integrator_.time()));
+  const double rounding = std::numeric_limits<double>::epsilon() * std::abs(setup_.disc_velocity(time_));
   return 2 / std::numbers::pi * law_.sharpness * rounding <= kMostRounding;
 }
 
 std::size_t SmoothedSimulation::most_steps() const {
-  const double periods = setup_.natural_frequency / (2 * std::numbers::pi) * (integrator_.time() + options_.settle);
-  return static_cast<std::size_t>(kFirstStiffSteps + kStiffStepsAPeriod * periods);
+  const double periods = setup_.natural_frequency / (2 * std::numbers::pi) * (time_ + options_.settle);
+  return static_cast<std::size_t>(kFirstSteps + kStepsAPeriod * periods);
 }
 
 void SmoothedSimulation::give_up(const std::string& reason) const {
-  const double t = integrator_.time();
   throw InputError(
-      fmt::format("the smoothed law cannot be integrated beyond t = {} s: {}; v_r = {} mm/s after "
-                  "{} steps",
-                  general(t, 6), reason, general(1e3 * relative_velocity(t, integrator_.state()), 3), steps_),
+      fmt::format("the smoothed law cannot be integrated beyond t = {} s: {}; v_r = {} mm/s after {} steps",
+                  general(time_), reason, general(1e3 * relative_velocity(time_, state_), 3), steps_),
       "lower the sharpness, or use the law with located events");
 }
 
-/// Events within the step just made, which began at `begin` in the state `before`.
-void SmoothedSimulation::find_events(double begin, const State& before) {
-  const double end = integrator_.time();
-  const State& after = integrator_.state();
+/// Events within the step just made.
+void SmoothedSimulation::find_events() {
+  const double begin = begin_, end = time_;
+  const State &before = step_.before, &after = state_;
   const auto crossing = [&](auto&& value) -> std::optional<double> {
     const double at_begin = value(begin, before), at_end = value(end, after);
     if (!(at_begin * at_end < 0)) return std::nullopt;
-    return find_zero([&](double t) { return value(t, integrator_.at(t)); }, begin, end, at_begin, at_end);
+    return find_zero([&](double t) { return value(t, state_at(t)); }, begin, end, at_begin, at_end);
   };
   const auto speed = [this](double t, const State& y) { return std::abs(relative_velocity(t, y)); };
 
   if (const auto t = crossing([](double, const State& y) { return y[1]; }); t && *t >= 0) {
-    motion_.turning_points.push_back({*t, integrator_.at(*t)[0] / setup_.natural_frequency, before[1] > 0});
+    motion_.turning_points.push_back({*t, state_at(*t)[0] / setup_.natural_frequency, before[1] > 0});
   }
   if (slipping_) {
     const auto gain = [this](double t, const State& y) { return setup_.disc_acceleration(t) - acceleration(t, y); };
     peak_speed_ = std::max({peak_speed_, speed(begin, before), speed(end, after)});
-    if (const auto t = crossing(gain)) peak_speed_ = std::max(peak_speed_, speed(*t, integrator_.at(*t)));
+    if (const auto t = crossing(gain)) peak_speed_ = std::max(peak_speed_, speed(*t, state_at(*t)));
   }
   const auto excess = [&](double t, const State& y) { return speed(t, y) - threshold(t); };
   if (const auto t = crossing(excess)) {
@@ -205,7 +230,7 @@ void SmoothedSimulation::begin_slip(double t, int direction) {
   slipping_ = true;
   peak_speed_ = 0;
   const bool begins_so = std::isnan(t);
-  const double friction = begins_so ? 0 : std::abs(law_.friction(relative_velocity(t, integrator_.at(t))));
+  const double friction = begins_so ? 0 : std::abs(law_.friction(relative_velocity(t, state_at(t))));
   motion_.slips.push_back({.break_away_time = t,
                            .restick_time = kNaN,
                            .stick_time = begins_so ? 0 : t - stick_begin_,
@@ -227,15 +252,15 @@ void SmoothedSimulation::slide(double t, const State& y) {
 }
 
 /// Samples within the step just made.
-void SmoothedSimulation::sample(double until) {
+void SmoothedSimulation::sample() {
   for (; next_sample_ < samples_; ++next_sample_) {
     const double t = static_cast<double>(next_sample_) / options_.rate;
-    if (t > until) break;
-    const State y = integrator_.at(t);
+    if (t > time_) break;
+    const State y = state_at(t);
     slide(t, y);
     write_sample(t, y);
   }
-  slide(until, integrator_.state());
+  slide(time_, state_);
 }
 
 void SmoothedSimulation::write_sample(double t, const State& y) {
