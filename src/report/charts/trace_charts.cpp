@@ -41,21 +41,26 @@ Chart window_chart(const DrawnTrace& d, const Window& w, bool with_models) {
   const auto in = [&](const std::vector<double>& values) {
     return std::span(values).subspan(w.begin, w.end - w.begin);
   };
-  std::vector<double> velocity, disc;
-  for (std::size_t i = w.begin; i < w.end; ++i) {
+  const auto of_each = [&](auto&& value) {  // one at a time: of a long record each is as large as a channel
+    std::vector<double> values(w.end - w.begin);
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = value(w.begin + k) / kMillimetre;
+    return values;
+  };
+  const auto disc = [&](std::size_t i) { return motion.disc_velocity_at(i); };
+  const auto velocity = [&](std::size_t i) {
     const double v_r = motion.relative_velocity[i];
-    if (of_block) disc.push_back(motion.disc_velocity_at(i) / kMillimetre);
-    velocity.push_back((of_block ? motion.disc_velocity_at(i) - v_r : v_r) / kMillimetre);
-  }
+    return of_block ? disc(i) - v_r : v_r;
+  };
   Chart chart{.x = {.quantity = "time", .unit = "s", .digits = chart_detail.time_digits},
               .panels = {{friction_axis(motion), 1.3}, {{of_block ? "v_{b}" : "v_{r}", "mm/s"}}}};
   add_drawn(d, w, "measured", in(motion.friction), kMeasured, 0, chart);
   for (std::size_t k = 0; with_models && k < d.models.size(); ++k) {
     add_drawn(d, w, curve_name(*d.models[k]), in(d.predictions[k]), model_stroke(k), 0, chart).shown = k < 2;
   }
-  add_drawn(d, w, "measured", velocity, kMeasured, 1, chart);
+  add_drawn(d, w, "measured", of_each(velocity), kMeasured, 1, chart);
   if (!of_block) return chart;
-  add_drawn(d, {w.begin, w.end, varies ? w.bins : 1, w.origin, w.unit}, "ω r of the disc", disc, kDisc, 1, chart);
+  add_drawn(d, {w.begin, w.end, varies ? w.bins : 1, w.origin, w.unit}, "ω r of the disc", of_each(disc), kDisc, 1,
+            chart);
   return chart;
 }
 
