@@ -17,7 +17,6 @@
 #include "results.hpp"
 #include "summary.hpp"
 #include "tribofit/campaign/batch.hpp"
-#include "tribofit/campaign/plan.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/text_of_file.hpp"
 #include "tribofit/output/whole_file.hpp"

@@ -31,18 +31,7 @@ std::optional<ComparisonReport> comparison_of(const Settings& s, const ResultRea
 }  // namespace
 
 Sharing sharing_from(const Settings& s) {
-  Sharing sharing;
-  as_usage([&] {
-    for (const std::string& text : s.share) sharing.common.push_back(share_from(text));
-    for (const std::string& text : s.vary) sharing.common.push_back(vary_from(text));
-  });
-  for (std::size_t a = 0; a < sharing.common.size(); ++a) {
-    for (std::size_t b = 0; b < a; ++b) {
-      if (sharing.common[a].parameter != sharing.common[b].parameter) continue;
-      throw UsageError("'" + sharing.common[a].parameter + "' is named twice in --share and --vary");
-    }
-  }
-  return sharing;
+  return as_usage([&] { return tribofit::sharing_from(s.share, s.vary); });
 }
 
 void check_comparison(const Settings& s, const std::string& results) {

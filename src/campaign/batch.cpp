@@ -67,15 +67,6 @@ std::string with_place(const InputError& error, const Run& run) {
   return InputError(error.problem(), error.advice(), where).what();
 }
 
-/// Why the analysis could not be done; empty where it was.
-std::string failure_of(const Identification& result) {
-  const bool fitted = std::any_of(result.fits.begin(), result.fits.end(),
-                                  [](const Fit& f) { return f.converged && !f.parameters.empty(); });
-  const bool driven = result.rate_state && result.rate_state->fitted();
-  if (result.analysed && (fitted || driven)) return "";
-  return result.warnings.empty() ? "no fit converged" : result.warnings.back();
-}
-
 class Batch {
  public:
   Batch(const Campaign& campaign, const BatchOptions& options, const BatchHooks& hooks)
@@ -107,22 +98,20 @@ class Batch {
  private:
   void end_run(std::size_t k) {
     RunEnd& end = outcome_.ends[k];
-    if (unwritten_in_a_row_ >= kMostUnwritten) {
-      end.begun = false;
-      return;
-    }
-    const Run& run = *end.run;
-    const FileState before = state_of(run.trace.path);
-    RunRecord record = record_of(run);
-    if (is_present(run, record)) {
-      end.present = true;
-      end.status = record.status;
-      end.message = record.message;
-    } else {
+    end.begun = unwritten_in_a_row_ < kMostUnwritten;
+    if (!end.begun) return;
+    const FileState before = state_of(end.run->trace.path);
+    RunRecord record = record_of(*end.run);
+    end.present = is_present(*end.run, record);
+    if (!end.present) {
       admission_.enter(bytes_[k]);
-      fit_and_keep(k, before, record, end);
+      std::optional<Identification> result;
+      if (record.status == RunStatus::ok) result = analysis_of_what_stays(*end.run, k, before, record);
+      keep(record, result, end);
       admission_.leave(bytes_[k]);
     }
+    end.status = record.status;
+    if (end.kept) end.message = record.message;
     report_progress(k, end);
   }
 
@@ -158,11 +147,11 @@ class Batch {
     return true;
   }
 
-  void fit_and_keep(std::size_t k, const FileState& before, RunRecord& record, RunEnd& end) {
-    std::optional<Identification> result;
-    if (record.status == RunStatus::ok) result = analysis_of_what_stays(*end.run, k, before, record);
-    end.status = record.status;
-    end.message = record.message;
+  static std::string key_of(const Run& run, const RunRecord& record) {
+    return hexadecimal(xxh64(record.settings, content_hash(std::vector{run.trace.path})));
+  }
+
+  void keep(const RunRecord& record, const std::optional<Identification>& result, RunEnd& end) {
     try {
       hooks_.keep(record, result ? &*result : nullptr);
       unwritten_in_a_row_ = 0;
@@ -171,10 +160,6 @@ class Batch {
       end.message = error.what();
       ++unwritten_in_a_row_;
     }
-  }
-
-  std::string key_of(const Run& run, const RunRecord& record) const {
-    return hexadecimal(xxh64(record.settings, content_hash(std::vector{run.trace.path})));
   }
 
   /// The analysis of the bytes that the key of the record is of: again, where the file changed meanwhile.
@@ -196,36 +181,31 @@ class Batch {
       }
     }
     record.status = RunStatus::unreadable;
-    if (record.message.empty()) {
+    if (record.message.empty())
       record.message = run.file + ": changed each time it was read; run again when it is complete";
-    }
     return std::nullopt;
   }
 
   std::optional<Identification> analysis_of(const Run& run, std::size_t k, RunRecord& record) const {
-    const auto refuse = [&](std::string message) {
-      record.status = RunStatus::unreadable;
-      record.message = std::move(message);
-      return std::nullopt;
-    };
-    std::optional<Identification> result;
     try {
       IdentifyOptions own = options_.identify;
       own.read = run.trace.read;
       own.threads = own.read.threads = threads_inside(bytes_[k]);
-      result = identify(run.trace.path, own);
+      Identification result = identify(run.trace.path, own);
+      result.path = run.file;
+      result.warnings.insert(result.warnings.begin(), run.warnings.begin(), run.warnings.end());
+      record.message = failure_of(result);
+      if (!record.message.empty()) record.status = RunStatus::failed;
+      return result;
     } catch (const InputError& error) {
-      return refuse(with_place(error, run));
+      record.message = with_place(error, run);
     } catch (const std::bad_alloc&) {
-      return refuse(run.file + ": there is not enough memory for it; use fewer --threads");
+      record.message = run.file + ": there is not enough memory for it; use fewer --threads";
     } catch (const std::exception& error) {  // whatever it is, it is this run's alone
-      return refuse(run.file + ": " + error.what());
+      record.message = run.file + ": " + error.what();
     }
-    result->path = run.file;
-    result->warnings.insert(result->warnings.begin(), run.warnings.begin(), run.warnings.end());
-    record.message = failure_of(*result);
-    if (!record.message.empty()) record.status = RunStatus::failed;
-    return result;
+    record.status = RunStatus::unreadable;
+    return std::nullopt;
   }
 
   /// A trace so long that it leaves no memory for others gets the threads that would be theirs.
@@ -260,6 +240,14 @@ class Batch {
 };
 
 }  // namespace
+
+std::string failure_of(const Identification& result) {
+  const bool fitted =
+      std::ranges::any_of(result.fits, [](const Fit& fit) { return fit.converged && !fit.parameters.empty(); });
+  const bool driven = result.rate_state && result.rate_state->fitted();
+  if (result.analysed && (fitted || driven)) return "";
+  return result.warnings.empty() ? "no fit converged" : result.warnings.back();
+}
 
 std::string result_path(const std::string& results, const std::string& name) {
   return (std::filesystem::path(results) / (name + ".json")).string();

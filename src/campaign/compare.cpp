@@ -23,11 +23,13 @@ bool fits(const Condition& stated, const Condition& own) {
 
 bool fits(const EarlierValue& row, const PooledGroup& group) {
   const auto same = [&](const OtherCondition& stated) {
-    return std::any_of(group.others.begin(), group.others.end(),
-                       [&](const OtherCondition& own) { return own.name == stated.name && own.value == stated.value; });
+    return std::ranges::any_of(
+        group.others, [&](const OtherCondition& own) { return own.name == stated.name && own.value == stated.value; });
   };
-  return fits(row.conditions.radius, group.conditions.radius) && fits(row.conditions.speed, group.conditions.speed) &&
-         fits(row.conditions.load, group.conditions.load) && std::all_of(row.others.begin(), row.others.end(), same);
+  const auto fit = [&](const ConditionInfo& info) {
+    return fits(row.conditions.*info.member, group.conditions.*info.member);
+  };
+  return std::ranges::all_of(condition_infos, fit) && std::ranges::all_of(row.others, same);
 }
 
 ComparedValue compared(const EarlierValue& earlier, const PooledValue& ours) {
@@ -44,35 +46,28 @@ ComparedValue compared(const EarlierValue& earlier, const PooledValue& ours) {
   return out;
 }
 
-const PooledValue* find(std::span<const PooledValue> values, const EarlierValue& earlier) {
-  const auto found = std::find_if(values.begin(), values.end(), [&](const PooledValue& v) {
-    return full_name(v.name, v.effect) == earlier.name && v.unit == earlier.unit && std::isfinite(v.value);
-  });
-  return found == values.end() ? nullptr : &*found;
-}
-
 /// Every value of a group that an earlier one can be put beside: law by law, each by both protocols.
 void add_partners(const EarlierValue& earlier, const PooledGroup& group, std::size_t index,
                   std::vector<ComparedValue>& out) {
-  const auto add = [&](const PooledValue* ours, const std::string& law, const std::string& protocol) {
-    if (ours == nullptr) return;
-    out.push_back(compared(earlier, *ours));
-    out.back().group = index;
-    out.back().law = law;
-    out.back().protocol = protocol;
+  const auto add = [&](const std::vector<PooledValue>& values, const std::string& law, const std::string& protocol) {
+    const auto ours = std::ranges::find_if(values, [&](const PooledValue& v) {
+      return full_name(v.name, v.effect) == earlier.name && v.unit == earlier.unit && std::isfinite(v.value);
+    });
+    if (ours == values.end()) return;
+    ComparedValue& one = out.emplace_back(compared(earlier, *ours));
+    one.group = index;
+    one.law = law;
+    one.protocol = protocol;
   };
-  std::vector<std::string> laws;
-  for (const auto& fit : group.fits) {
-    if (std::find(laws.begin(), laws.end(), fit.law) == laws.end()) laws.push_back(fit.law);
-  }
-  for (const std::string& law : laws) {
-    if (!earlier.law.empty() && earlier.law != law) continue;
+  std::set<std::string> laws;
+  for (const auto& first : group.fits) {
+    if (!laws.insert(first.law).second || (!earlier.law.empty() && earlier.law != first.law)) continue;
     for (const auto& fit : group.fits) {
-      const bool protocol_fits = earlier.protocol.empty() || earlier.protocol == fit.protocol;
-      if (fit.law == law && protocol_fits) add(find(fit.parameters, earlier), fit.law, fit.protocol);
+      const bool is_meant = earlier.protocol.empty() || earlier.protocol == fit.protocol;
+      if (fit.law == first.law && is_meant) add(fit.parameters, fit.law, fit.protocol);
     }
   }
-  if (earlier.law.empty() && earlier.protocol.empty()) add(find(group.measures, earlier), "", "");
+  if (earlier.law.empty() && earlier.protocol.empty()) add(group.measures, "", "");
 }
 
 }  // namespace

@@ -1,11 +1,77 @@
 #pragma once
 
-#include "condition_cells.hpp"
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "conditions.hpp"
+#include "output/csv_table.hpp"
 #include "output/described.hpp"
 #include "segmentation/counts.hpp"
-#include "tribofit/campaign/run_result.hpp"
+#include "tribofit/campaign/pool.hpp"
 
 namespace tribofit {
+
+/// The object in a file that sealed() made (run_result.hpp); nothing where it is missing, damaged or no object.
+std::optional<Json> read_sealed(const std::string& path);
+
+/// "radius_source".
+inline std::string source_key(const ConditionInfo& info) {
+  return std::string(info.name) + "_source";
+}
+
+/// {"radius_mm", "speed_rpm", "load_N"}, null where not known.
+inline Json condition_values(const Conditions& conditions) {
+  Json values = Json::object();
+  for (const ConditionInfo& info : condition_infos) {
+    values[info.column] = number((conditions.*info.member).value / info.si);
+  }
+  return values;
+}
+
+/// The same with "radius_source", ..., null where nothing said it.
+inline Json json_of(const Conditions& conditions) {
+  Json json = condition_values(conditions);
+  for (const ConditionInfo& info : condition_infos) {
+    json[source_key(info)] = text_or_null((conditions.*info.member).source);
+  }
+  return json;
+}
+inline void read_json(const Json& json, Conditions& conditions) {
+  for (const ConditionInfo& info : condition_infos) {
+    Condition& one = conditions.*info.member;
+    const Json value = json.value(info.column, Json()), source = json.value(source_key(info), Json());
+    one.value = value.is_number() ? value.get<double>() * info.si : std::nan("");
+    one.source = source.is_string() ? source.get<std::string>() : "";
+  }
+}
+
+/// The columns of conditions in tables of a campaign: radius_mm, speed_rpm, load_N and those that any run states.
+class ConditionCells {
+ public:
+  explicit ConditionCells(std::span<const RunResult> runs) {
+    for (const RunResult& run : runs) add_names(run.run.others, names_);
+  }
+  explicit ConditionCells(std::span<const PooledGroup> groups) {
+    for (const PooledGroup& group : groups) add_names(group.others, names_);
+  }
+
+  std::string header() const {
+    const std::string line = csv_line(Json(names_));
+    return csv_names(condition_values({})) + (names_.empty() ? "" : "," + line.substr(0, line.size() - 1));
+  }
+  /// The cells of a row, as a list.
+  Json of(const Conditions& conditions, const std::vector<OtherCondition>& others) const {
+    Json row = {condition_values(conditions)};
+    for (const std::string& name : names_) row.push_back(text_or_null(value_of(others, name)));
+    return row;
+  }
+
+ private:
+  std::vector<std::string> names_;
+};
 
 /// The names under which results stand in files: report/json.cpp writes by them what ResultReader reads.
 

@@ -17,10 +17,19 @@ namespace {
 constexpr std::size_t kBins = 40;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// Sums over the slip samples of one bin.
+/// Sums over slip samples: of one bin, or of all.
 struct Bin {
-  std::size_t samples = 0;
+  std::size_t samples = 0, below = 0;  ///< those with an error below the limit of [D]
   double friction = 0, fitted = 0, relative = 0, largest = 0;
+
+  void add(const Bin& more) {
+    samples += more.samples;
+    below += more.below;
+    friction += more.friction;
+    fitted += more.fitted;
+    relative += more.relative;
+    largest = std::max(largest, more.largest);
+  }
 };
 
 double mean(double sum, std::size_t count) {
@@ -39,16 +48,8 @@ double fastest_slip(const Identification& result) {
   return fastest;
 }
 
-std::size_t bin_of(double velocity, double bins_per_velocity) {
-  return std::min(static_cast<std::size_t>(std::abs(velocity) * bins_per_velocity), kBins - 1);
-}
-
-/// The error curve of one fit; the bins serve what all fits share.
-ErrorCurve error_curve(const Fit& fit, const Record& one, const Observations& observations, double fastest,
-                       std::vector<Bin>& bins) {
-  bins.assign(kBins, {});
-  std::size_t samples = 0, below = 0;
-  double sum = 0, largest = 0;
+std::vector<Bin> bins_of(const Fit& fit, const Record& one, const Observations& observations, double fastest) {
+  std::vector<Bin> bins(kBins);
   const std::vector<double> p = fit.values();
   const double bins_per_velocity = static_cast<double>(kBins) / fastest;
   const FullRecord record(std::span(&one, 1), observations, fit.model.needs());
@@ -60,34 +61,25 @@ ErrorCurve error_curve(const Fit& fit, const Record& one, const Observations& ob
     evaluate<double>(fit.model, p.data(), slip, slip.velocity, model);
     const std::span<const double> measured = record.friction(range);
     for (std::size_t i = 0; i < model.size(); ++i) {
-      const double mu = measured[i], v = slip.velocity[i];
-      if (mu == 0) continue;
-      const double e = std::abs((mu - model[i]) / mu);
-      Bin& bin = bins[bin_of(v, bins_per_velocity)];
-      ++bin.samples;
+      if (measured[i] == 0) continue;
+      const double e = std::abs((measured[i] - model[i]) / measured[i]);
       const double direction = model[i] < 0 ? -1 : 1;  // of the slip: noise may turn v round near rest
-      bin.friction += direction * mu;
-      bin.fitted += direction * model[i];
-      bin.relative += e;
-      bin.largest = std::max(bin.largest, e);
-      ++samples;
-      below += e < published_error_limit ? 1 : 0;
-      sum += e;
-      largest = std::max(largest, e);
+      const auto bin = static_cast<std::size_t>(std::abs(slip.velocity[i]) * bins_per_velocity);
+      bins[std::min(bin, kBins - 1)].add(
+          {1, e < published_error_limit ? std::size_t{1} : 0, direction * measured[i], direction * model[i], e, e});
     }
   }
+  return bins;
+}
+
+ErrorCurve curve_of(const Fit& fit, const std::vector<Bin>& bins) {
   ErrorCurve curve;
   curve.law = to_string(fit.model.law());
   curve.protocol = to_string(fit.protocol);
-  curve.below_limit = mean(static_cast<double>(below), samples);
-  curve.mean_relative = mean(sum, samples);
-  curve.max_relative = samples > 0 ? largest : kNone;
-  return curve;
-}
-
-void add_bins(const std::vector<Bin>& bins, ErrorCurve& curve) {
+  Bin all;
   std::size_t filled = 0, below = 0;
   for (const Bin& bin : bins) {
+    all.add(bin);
     curve.fitted.push_back(mean(bin.fitted, bin.samples));
     curve.bin_mean_relative.push_back(mean(bin.relative, bin.samples));
     curve.bin_max_relative.push_back(bin.samples > 0 ? bin.largest : kNone);
@@ -97,7 +89,11 @@ void add_bins(const std::vector<Bin>& bins, ErrorCurve& curve) {
     below += e < published_error_limit ? 1 : 0;
     curve.largest_of_bins = std::max(curve.largest_of_bins, e);
   }
+  curve.below_limit = mean(static_cast<double>(all.below), all.samples);
   curve.bins_below_limit = mean(static_cast<double>(below), filled);
+  curve.mean_relative = mean(all.relative, all.samples);
+  curve.max_relative = all.samples > 0 ? all.largest : kNone;
+  return curve;
 }
 
 void add_errors(const Identification& result, RunFigures& figures) {
@@ -113,8 +109,8 @@ void add_errors(const Identification& result, RunFigures& figures) {
       effects = fit.model.effect_keys();
       observations = observe(result.motion, result.segmentation, fit.model.needs());
     }
-    figures.errors.push_back(error_curve(fit, one, *observations, fastest, bins));
-    add_bins(bins, figures.errors.back());
+    bins = bins_of(fit, one, *observations, fastest);
+    figures.errors.push_back(curve_of(fit, bins));
   }
   if (figures.errors.empty()) return;
   figures.bin_width = fastest / kMillimetre / static_cast<double>(kBins);

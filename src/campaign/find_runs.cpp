@@ -1,23 +1,21 @@
-#include "find_runs.hpp"
-#include "limits.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <system_error>
 #include <utility>
 
+#include "conditions.hpp"
 #include "ingest/csv/encoding.hpp"
-#include "tribofit/campaign/names.hpp"
+#include "limits.hpp"
+#include "output/csv_table.hpp"
+#include "output/json.hpp"
 #include "tribofit/campaign/run.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/output_tables.hpp"
 #include "tribofit/ingest/spelling.hpp"
-#include "tribofit/ingest/units.hpp"
 #include "tribofit/output/digits.hpp"
 
 namespace tribofit {
@@ -25,42 +23,59 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Traces of a folder by their names: text, or the binary formats where there is no text.
-enum class Named { no, text, binary };
+struct FolderTraces {
+  std::vector<std::string> paths;  ///< in order of name
+  std::string left_out;            ///< tables that --csv wrote there, as a list
+};
 
-Named named_as(const fs::path& path) {
-  const std::string extension = lower_case(path.extension().string());
-  // The manifest of a folder of runs holds their conditions, not a run.
-  if (path.filename() == manifest_name || path.filename().string().front() == '.') return Named::no;
-  if (extension == ".csv" || extension == ".tsv") return Named::text;
-  return is_one_of(extension, {".mat", ".uff", ".unv", ".tdms"}) ? Named::binary : Named::no;
-}
-
-/// The manifest's condition where the command line says nothing; where both speak and differ, a warning.
-void merge(const ConditionInfo& info, const Conditions& in_manifest, Conditions& used, const std::string& place,
-           std::vector<std::string>& warnings) {
-  const Condition& manifest = in_manifest.*info.member;
-  Condition& merged = used.*info.member;
-  if (!manifest.known()) return;
-  if (!merged.known()) {
-    merged = manifest;
-    return;
+/// The text files of a folder, or the binary ones where there is no text, without its manifest, which holds the
+/// conditions of runs and is none. Throws InputError where there are none.
+FolderTraces traces_in(const std::string& folder) {
+  FolderTraces found;
+  std::vector<std::string> binary;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string path = it->path().string(), name = it->path().filename().string();
+    const std::string extension = lower_case(it->path().extension().string());
+    if (name == manifest_name || name.front() == '.' || it->is_directory(error)) continue;
+    if (is_one_of(extension, {".mat", ".uff", ".unv", ".tdms"})) binary.push_back(path);
+    if (!is_one_of(extension, {".csv", ".tsv"})) continue;
+    if (!is_output_table(path)) {
+      found.paths.push_back(path);
+    } else {
+      found.left_out += (found.left_out.empty() ? "" : ", ") + name;
+    }
   }
-  if (std::abs(merged.value - manifest.value) <= kSameStatement * std::abs(manifest.value)) return;
-  warnings.push_back(fmt::format("--{} {} {} is used, not the {} {} of {}", info.name,
-                                 general(merged.value / info.si, 4), info.unit, general(manifest.value / info.si, 4),
-                                 info.unit, place));
+  if (error) {
+    throw InputError("the folder cannot be read: " + error.message(), "check the permission to read", {folder, 0, ""});
+  }
+  if (found.paths.empty()) found.paths = std::move(binary);
+  if (found.paths.empty()) {
+    const std::string only = ", only tables that --csv wrote (" + found.left_out + ")";
+    throw InputError("the folder has no traces" + (found.left_out.empty() ? "" : only),
+                     "name a folder with .csv, .tsv, .mat, .uff, .unv or .tdms files, or a trace itself",
+                     {folder, 0, ""});
+  }
+  std::ranges::sort(found.paths, in_natural_order);
+  return found;
 }
 
-/// What is stated of a run in `place`, under what the user says (`read`).
+/// What is stated of a run in `place`, where the user says nothing (`read`); where both speak and differ, a warning.
 Run stated_run(const ManifestRow& row, const std::string& place, const ReadOptions& read) {
   Run run = run_of(row.path, read);
   Conditions& merged = run.trace.read.conditions;
   for (const ConditionInfo& info : condition_infos) {
-    if (info.member != &Conditions::radius || read.step_radii.empty()) {
-      merge(info, row.conditions, merged, place, run.warnings);
-    } else if (row.conditions.radius.known()) {
+    const Condition& stated = row.conditions.*info.member;
+    Condition& used = merged.*info.member;
+    if (!stated.known()) continue;
+    if (info.member == &Conditions::radius && !read.step_radii.empty()) {
       run.warnings.push_back("the radii of the steps given with --radius are used, not the radius of " + place);
+    } else if (!used.known()) {
+      used = stated;
+    } else if (std::abs(used.value - stated.value) > kSameStatement * std::abs(stated.value)) {
+      run.warnings.push_back(fmt::format("--{} {} {} is used, not the {} {} of {}", info.name,
+                                         general(used.value / info.si, 4), info.unit,
+                                         general(stated.value / info.si, 4), info.unit, place));
     }
   }
   run.known = row;
@@ -75,21 +90,19 @@ std::string inside(const std::string& folder, const std::string& path) {
   return path.starts_with(prefix) ? path.substr(prefix.size()) : path;
 }
 
-/// A run of which its name says something.
-Run named_run(const std::string& path, const NamePattern& pattern, const ReadOptions& read) {
+/// The run of a file, of which its name may say something.
+Run run_at(const std::string& path, const std::optional<NamePattern>& pattern, const ReadOptions& read) {
+  Run run = run_of(path, read);
+  if (!pattern) return run;
   const std::string file = fs::path(path).filename().string();
-  const auto refused = [&](const std::string& problem, const std::string& advice) {
-    Run run = run_of(path, read);
-    run.problem = InputError(problem, advice, {file, 0, ""}).what();
-    return run;
-  };
   try {
-    const auto fields = pattern.read(file);
+    const auto fields = pattern->read(file);
     if (fields) return stated_run(row_from(*fields, path, "file name"), "its name", read);
+    throw InputError("does not fit the pattern '" + pattern->text() + "'", "change the pattern or move the file");
   } catch (const InputError& error) {
-    return refused(error.problem(), error.advice());
+    run.problem = InputError(error.problem(), error.advice(), {file, 0, ""}).what();
+    return run;
   }
-  return refused("does not fit the pattern '" + pattern.text() + "'", "change the pattern or move the file");
 }
 
 void add_manifest(const std::string& folder, const ReadOptions& read, ManifestErrors errors, Campaign& campaign) {
@@ -117,9 +130,7 @@ void add_folder(const std::string& folder, const ReadOptions& read, const FindOp
     add_manifest(folder, read, options.errors, campaign);
   } else {
     const FolderTraces traces = traces_in(folder);
-    for (const std::string& path : traces.paths) {
-      campaign.runs.push_back(options.pattern ? named_run(path, *options.pattern, read) : run_of(path, read));
-    }
+    for (const std::string& path : traces.paths) campaign.runs.push_back(run_at(path, options.pattern, read));
     if (!traces.left_out.empty()) {
       campaign.notes.push_back("not read from " + folder + ", because --csv wrote them: " + traces.left_out);
       campaign.runs[first].notes.push_back(campaign.notes.back());  // said once
@@ -174,36 +185,6 @@ void name_runs(std::vector<Run>& runs) {
 
 }  // namespace
 
-FolderTraces traces_in(const std::string& folder) {
-  FolderTraces found;
-  std::vector<std::string> binary;
-  std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    const std::string path = it->path().string();
-    const Named named = named_as(it->path());
-    if (named == Named::no || it->is_directory(error)) continue;
-    if (named == Named::binary) {
-      binary.push_back(path);
-    } else if (!is_output_table(path)) {
-      found.paths.push_back(path);
-    } else {
-      found.left_out += (found.left_out.empty() ? "" : ", ") + it->path().filename().string();
-    }
-  }
-  if (error) {
-    throw InputError("the folder cannot be read: " + error.message(), "check the permission to read", {folder, 0, ""});
-  }
-  if (found.paths.empty()) found.paths = std::move(binary);
-  if (found.paths.empty()) {
-    const std::string only = ", only tables that --csv wrote (" + found.left_out + ")";
-    throw InputError("the folder has no traces" + (found.left_out.empty() ? "" : only),
-                     "name a folder with .csv, .tsv, .mat, .uff, .unv or .tdms files, or a trace itself",
-                     {folder, 0, ""});
-  }
-  std::sort(found.paths.begin(), found.paths.end(), in_natural_order);
-  return found;
-}
-
 Run run_of(const std::string& path, const ReadOptions& read) {
   Run run;
   run.trace = {path, read};
@@ -221,11 +202,69 @@ Campaign find_runs(const std::vector<std::string>& names, const ReadOptions& rea
       add_folder(name, read, options, campaign);
       if (names.size() == 1) campaign.folder = name;
     } else {
-      campaign.runs.push_back(options.pattern ? named_run(name, *options.pattern, read) : run_of(name, read));
+      campaign.runs.push_back(run_at(name, options.pattern, read));
     }
   }
   name_runs(campaign.runs);
   return campaign;
+}
+
+namespace {
+
+/// What the header says where the name says nothing; where both speak and differ, a remark.
+void take_header(const StatedFields& header, const std::string& file, StatedFields& fields,
+                 std::vector<std::string>& remarks) {
+  for (std::size_t k = 0; k < condition_infos.size(); ++k) {
+    const auto field = stated_conditions[k];
+    const ConditionInfo& condition = condition_infos[k];
+    const std::string& said = header.*field;
+    std::string& named = fields.*field;
+    if (named.empty()) named = said;
+    if (said.empty() || named == said) continue;
+    const auto value_of_text = [&](const std::string& text) {
+      StatedFields one;
+      one.*field = text;
+      return (row_from(one, file, "").conditions.*condition.member).value;
+    };
+    try {
+      const double a = value_of_text(named), b = value_of_text(said);
+      if (std::abs(a - b) > kSameStatement * std::abs(b)) {
+        remarks.push_back(fmt::format("{}: the {} of its header is {}, that of its name {}; check which is right", file,
+                                      condition.name, said, named));
+      }
+    } catch (const InputError&) {  // the reader of the manifest will say what is wrong with it
+    }
+  }
+}
+
+}  // namespace
+
+ManifestDraft draft_manifest(const std::string& folder, const std::optional<NamePattern>& pattern) {
+  ManifestDraft draft;
+  std::vector<std::pair<std::string, StatedFields>> rows;
+  std::vector<std::string> others, remarks;
+  for (const std::string& path : traces_in(folder).paths) {
+    const std::string file = fs::path(path).filename().string();
+    const std::optional<StatedFields> named = pattern ? pattern->read(file) : usual_fields(file);
+    if (!named) remarks.push_back(fmt::format("{} does not fit the pattern {}", file, pattern->text()));
+    StatedFields& fields = rows.emplace_back(file, named.value_or(StatedFields())).second;
+    take_header(header_fields(path), file, fields, remarks);
+    add_names(fields.others, others);
+    if (!fields.radius.empty()) ++draft.complete;
+  }
+  draft.runs = rows.size();
+  if (draft.complete < draft.runs) {
+    remarks.push_back(
+        fmt::format("{} of {} runs: no radius found; fill it in, as in 15mm", draft.runs - draft.complete, draft.runs));
+  }
+  for (const std::string& remark : remarks) draft.text += "# " + remark + "\n";
+  draft.text += csv_line("file", "radius", "speed", "load", "repeat", Json(others));
+  for (const auto& [file, fields] : rows) {
+    Json values = Json::array();
+    for (const std::string& name : others) values.push_back(value_of(fields.others, name));
+    draft.text += csv_line(file, fields.radius, fields.speed, fields.load, fields.repeat, values);
+  }
+  return draft;
 }
 
 }  // namespace tribofit

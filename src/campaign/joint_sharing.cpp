@@ -9,25 +9,21 @@
 #include <utility>
 
 #include "fit/shared_fit.hpp"
+#include "kept_samples.hpp"
 #include "limits.hpp"
 #include "tribofit/friction/effects/all.hpp"
 
 namespace tribofit {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-
 /// Why means over a few samples, without channels, are not enough for a model; empty where they are.
 std::string needs_more(const FrictionModel& model) {
   for (const Effect& effect : model.effects()) {
     const EffectInfo info = describe(effect);
-    const bool own = std::any_of(info.parameters.begin(), info.parameters.end(),
-                                 [](const Parameter& p) { return p.scope == ParameterScope::record; });
-    const Channels& c = info.needs;
-    if (own || info.needs_full_resolution || model.state_count() > 0 || c.acceleration || c.angle || c.distance ||
-        c.load || c.temperature || c.stick_time || c.lead || c.force || c.plateau || c.time) {
+    const bool own =
+        std::ranges::find(info.parameters, ParameterScope::record, &Parameter::scope) != info.parameters.end();
+    if (own || info.needs_full_resolution || model.state_count() > 0 || info.needs != Channels{})
       return info.key + " acts on more than speed";
-    }
   }
   return "";
 }
@@ -53,24 +49,25 @@ void widen_bounds(const CondensedRun::OfFit& fit, Bounds& bounds) {
 /// Adds a run; why it cannot be where it cannot.
 std::string add_run(const ResultReader& results, const RunResult& run, const ResultFit& own, const FrictionModel& model,
                     Together& out) {
-  std::optional<CondensedRun> condensed = results.condensed(run.position);
-  const CondensedRun::OfFit* fit = condensed ? condensed->fit(own.law, own.effects) : nullptr;
-  if (fit == nullptr || fit->lower.size() != own.parameters.size())
+  CondensedRun condensed = results.condensed(run.position).value_or(CondensedRun());
+  const auto fit =
+      std::ranges::find_if(condensed.fits, [&](const auto& f) { return f.law == own.law && f.effects == own.effects; });
+  if (fit == condensed.fits.end() || fit->lower.size() != own.parameters.size())
     return run.run.name + " was kept by an earlier version; --again fits it anew";
-  const auto& slips = condensed->observations.slips;
-  const bool sticks = std::any_of(slips.begin(), slips.end(), [](const auto& slip) { return slip.from_stick; });
+  const auto& slips = condensed.observations.slips;
+  const bool sticks = std::ranges::any_of(slips, [](const auto& slip) { return slip.from_stick; });
   if (describe(model.law()).steep_at_rest && sticks)
     return "the " + own.law + " law is steep at rest, where a run keeps means only";
-  out.values += condensed->observations.size();
+  out.values += condensed.observations.size();
   if (out.values > kMostValuesTogether) return fmt::format("the runs have more than {} values", kMostValuesTogether);
-  for (const double weight : condensed->observations.weight) {
-    out.squares_within += weight * condensed->within;
+  for (const double weight : condensed.observations.weight) {
+    out.squares_within += weight * condensed.within;
     out.samples += weight;
   }
   SharingRecord& record = out.records.emplace_back();
   widen_bounds(*fit, out.bounds);
-  record.is_points = condensed->is_points;
-  record.observations = &out.observations.emplace_back(std::move(condensed->observations));
+  record.is_points = condensed.is_points;
+  record.observations = &out.observations.emplace_back(std::move(condensed.observations));
   record.common.assign(own.parameters.size(), SharingRecord::kOwn);
   for (std::size_t k = 0; k < own.parameters.size(); ++k) {
     record.values.push_back(own.parameters[k].value * model.parameters()[k].parameter.si);
@@ -79,29 +76,18 @@ std::string add_run(const ResultReader& results, const RunResult& run, const Res
   return "";
 }
 
-/// The common values of all levels, one after the other.
-std::size_t number_common(const SharedLaw& law, const SharedFit& fit, std::vector<SharingRecord>& records) {
-  std::size_t first = 0;
-  for (std::size_t c = 0; c < law.parameters.size(); ++c) {
-    for (std::size_t i = 0; i < records.size(); ++i) records[i].common[law.parameters[c]] = first + law.level[c][i];
-    first += fit.common[c].values.size();
-  }
-  return first;
+std::size_t members_of(const SharedLaw& law, std::size_t common, std::size_t level) {
+  return static_cast<std::size_t>(std::ranges::count(law.level[common], level));
 }
 
 /// Every value is known from the single fits of all of its runs.
 bool all_know(const SharedLaw& law, const SharedFit& fit) {
   for (std::size_t c = 0; c < fit.common.size(); ++c) {
     for (std::size_t l = 0; l < fit.common[c].values.size(); ++l) {
-      const auto members = std::count(law.level[c].begin(), law.level[c].end(), l);
-      if (fit.common[c].values[l].runs != static_cast<std::size_t>(members)) return false;
+      if (fit.common[c].values[l].runs != members_of(law, c, l)) return false;
     }
   }
   return true;
-}
-
-std::string at_level(const SharedFit::Parameter& common, std::size_t l) {
-  return common.condition.empty() ? common.name : common.name + " at " + common.condition + " " + common.levels[l];
 }
 
 void take_common(const RecordsFit& found, const FrictionModel& model, const SharedLaw& law, SharedFit& fit) {
@@ -110,18 +96,18 @@ void take_common(const RecordsFit& found, const FrictionModel& model, const Shar
     const double si = model.parameters()[law.parameters[c]].parameter.si;
     for (std::size_t l = 0; l < fit.common[c].values.size(); ++l) {
       const SharedEstimate& estimate = found.common[next++];
-      const auto members = std::count(law.level[c].begin(), law.level[c].end(), l);
       PooledValue& value = fit.common[c].values[l];
-      value.runs = static_cast<std::size_t>(members);
+      value.runs = members_of(law, c, l);
+      const auto known = [&](double error) { return estimate.determined ? error / si : kUnknown; };
       value.value = estimate.value / si;
-      value.std_error = estimate.determined ? estimate.std_error / si : kUnknown;
-      value.lower95 = estimate.determined ? estimate.lower95 / si : kUnknown;
-      value.upper95 = estimate.determined ? estimate.upper95 / si : kUnknown;
-      value.statistical = estimate.determined ? estimate.statistical / si : kUnknown;
+      value.std_error = known(estimate.std_error);
+      value.lower95 = known(estimate.lower95);
+      value.upper95 = known(estimate.upper95);
+      value.statistical = known(estimate.statistical);
       // Scatter between the runs that would widen the error as much.
       const double beyond = std::max(0.0, value.std_error * value.std_error - value.statistical * value.statistical);
-      value.between = members > 1 ? std::sqrt(beyond * static_cast<double>(members)) : kUnknown;
-      if (!estimate.determined) fit.notes.push_back(at_level(fit.common[c], l) + " is not determined by these runs");
+      value.between = value.runs > 1 ? std::sqrt(beyond * static_cast<double>(value.runs)) : kUnknown;
+      if (!estimate.determined) fit.notes.push_back(fit.common[c].at(l) + " is not determined by these runs");
     }
   }
 }
@@ -160,8 +146,8 @@ std::string fit_jointly(const ResultReader& results, std::span<const RunResult> 
   std::vector<Effect> effects;
   for (const std::string& key : law.like.effects) {
     const auto catalogue = effect_catalogue();
-    const auto known = std::find_if(catalogue.begin(), catalogue.end(),
-                                    [&](const Effect& effect) { return describe(effect).key == key; });
+    const auto known =
+        std::ranges::find_if(catalogue, [&](const Effect& effect) { return describe(effect).key == key; });
     if (known == catalogue.end()) return key + " is not of the catalogue";
     effects.push_back(*known);
   }
@@ -173,7 +159,12 @@ std::string fit_jointly(const ResultReader& results, std::span<const RunResult> 
     std::string why = add_run(results, runs[r], *runs[r].fit(law.like.law, law.like.protocol), model, all);
     if (!why.empty()) return why;
   }
-  const std::size_t count = number_common(law, fit, all.records);
+  std::size_t count = 0;  // the common values of all levels, one after the other
+  for (std::size_t c = 0; c < fit.common.size(); ++c) {
+    for (std::size_t i = 0; i < all.records.size(); ++i)
+      all.records[i].common[law.parameters[c]] = count + law.level[c][i];
+    count += fit.common[c].values.size();
+  }
   const RecordsFit found = fit_sharing_records(model, all.records, all.bounds, count);
   if (!found.converged) return "it " + found.message;
   take_test(found, runs, law, all, fit);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -7,6 +8,8 @@
 #include "tribofit/campaign/sharing.hpp"
 
 namespace tribofit {
+
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// A law that runs share parameters of.
 struct SharedLaw {

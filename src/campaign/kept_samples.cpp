@@ -6,11 +6,48 @@
 #include <limits>
 #include <system_error>
 
-#include "sealed.hpp"
+#include "described_results.hpp"
+#include "limits.hpp"
 #include "tribofit/output/whole_file.hpp"
 
 namespace tribofit {
 namespace {
+
+/// Mean square of what samples are off the values that are their means.
+double square_within(const Motion& motion, const Observations& observations) {
+  double squares = 0, count = 0;
+  for (const auto& slip : observations.slips) {
+    for (std::size_t i = slip.samples.begin; i < slip.samples.end; ++i) {
+      if (motion.has_fault(i, SampleFault::any)) continue;
+      const std::size_t value = slip.begin + (i - slip.samples.begin) / observations.samples_per_value;
+      squares += std::pow(motion.friction[i] - observations.friction[value], 2);
+      count += 1;
+    }
+  }
+  return count > 0 ? squares / count : 0;
+}
+
+/// Up to kMostCondensedValues values are those of its own fit; beyond that each is a mean over more samples, with the
+/// variance of speed within it.
+CondensedRun condensed(const Identification& result) {
+  CondensedRun out;
+  out.is_points = result.motion.is_points();
+  const std::size_t slips = std::max<std::size_t>(1, result.segmentation.cycles.size());
+  const std::size_t values = std::clamp(kMostCondensedValues / slips, kFewestCondensedOfSlip, kMostCondensedOfSlip);
+  out.observations = observe(result.motion, result.segmentation, {}, values);
+  out.within = square_within(result.motion, out.observations);
+  for (const Fit& fit : result.fits) {
+    if (fit.protocol != Protocol::joint || fit.parameters.empty()) continue;
+    CondensedRun::OfFit& of_fit = out.fits.emplace_back();
+    of_fit.law = to_string(fit.model.law());
+    of_fit.effects = fit.model.effect_keys();
+    for (const FitParameter& p : fit.parameters) {
+      of_fit.lower.push_back(p.parameter.lower * p.parameter.si);
+      of_fit.upper.push_back(p.parameter.upper * p.parameter.si);
+    }
+  }
+  return out;
+}
 
 /// Whether slips and values fit together: another program may have written the file.
 bool is_consistent(const Observations& o) {
@@ -53,11 +90,15 @@ void keep(const std::string& path, const std::string& settings, const Struct& wh
   write_whole(path, sealed(line_of(json)));
 }
 
+/// Nothing where there is none of these settings and this make.
 template <class Struct>
-std::optional<Struct> kept(const std::string& path, const std::string& settings) {
-  const auto json = read_sealed(path);
-  if (!json || json->value("settings", std::string()) != settings) return std::nullopt;
-  return read_from<Struct>(*json);
+std::optional<Struct> kept(const std::string& results, const PlannedRun& run, const char* what) {
+  try {
+    const auto json = read_sealed(path_of(results, run.name, what));
+    if (json && json->value("settings", std::string()) == run.settings) return read_from<Struct>(*json);
+  } catch (const Json::exception&) {  // whole, but of another make
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -76,24 +117,14 @@ void keep_samples(const std::string& results, const RunRecord& run, const Identi
 }
 
 std::optional<RunFigures> ResultReader::figures(std::size_t k) const {
-  const PlannedRun& run = plan_.runs.at(k);
-  try {
-    return kept<RunFigures>(path_of(folder_, run.name, "figures"), run.settings);
-  } catch (const Json::exception&) {  // whole, but of another make
-    return std::nullopt;
-  }
+  return kept<RunFigures>(folder_, plan_.runs.at(k), "figures");
 }
 
 std::optional<CondensedRun> ResultReader::condensed(std::size_t k) const {
-  const PlannedRun& run = plan_.runs.at(k);
-  try {
-    auto out = kept<CondensedRun>(path_of(folder_, run.name, "condensed"), run.settings);
-    if (!out || !is_consistent(out->observations)) return std::nullopt;
-    complete(out->observations);
-    return out;
-  } catch (const Json::exception&) {  // whole, but of another make
-    return std::nullopt;
-  }
+  auto out = kept<CondensedRun>(folder_, plan_.runs.at(k), "condensed");
+  if (!out || !is_consistent(out->observations)) return std::nullopt;
+  complete(out->observations);
+  return out;
 }
 
 }  // namespace tribofit

@@ -1,32 +1,37 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "output/described.hpp"
-#include "tribofit/campaign/figures.hpp"
 #include "tribofit/campaign/run_result.hpp"
-#include "tribofit/ingest/units.hpp"
+#include "tribofit/fit/observations.hpp"
 
 namespace tribofit {
+
+/// What a run keeps of its samples for a fit of all runs together: the means over a few neighbours by which laws are
+/// fitted (see Observations), without channels. A megabyte in memory at the most, but for runs of thousands of slips.
+struct CondensedRun {
+  /// Bounds of the parameters of a joint fit [SI]; held where they are equal.
+  struct OfFit {
+    std::string law;
+    std::vector<std::string> effects;
+    std::vector<double> lower, upper;
+  };
+  Observations observations;
+  bool is_points = false;
+  double within = 0;  ///< mean square of friction about the values, over all samples [1 or N^2]
+  std::vector<OfFit> fits;
+};
 
 /// Writes NAME.figures.json and NAME.condensed.json of an analysed run; of one that was not, removes them. Throws
 /// WriteError.
 void keep_samples(const std::string& results, const RunRecord& run, const Identification* result);
 
-inline constexpr int kFigureDigits = 6, kCondensedDigits = 8;
-
-template <class Get>
-constexpr auto figure(Get get) {
-  return to_digits(kFigureDigits, get);
-}
-template <class Get>
-constexpr auto condensed_in(double unit, Get get) {
-  return in(unit, get, kCondensedDigits);
-}
-template <class Get>
-constexpr auto condensed_number(Get get) {
-  return to_digits(kCondensedDigits, get);
-}
+// Six digits are more than a picture shows; eight are more than any sensor has.
+inline constexpr auto figure = [](auto get) { return to_digits(6, get); };
+inline constexpr auto condensed_number = [](auto get) { return to_digits(8, get); };
+inline constexpr auto condensed_in = [](double unit, auto get) { return in(unit, get, 8); };
 
 constexpr auto description(const ErrorCurve*) {
   using C = ErrorCurve;

@@ -3,17 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <filesystem>
 #include <string_view>
 #include <utility>
 
-#include "ingest/manifest_roles.hpp"
+#include "conditions.hpp"
 #include "ingest/reader.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
-#include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
 namespace {
@@ -22,13 +20,8 @@ constexpr const char* kNumber = "[0-9]+(?:[.,][0-9]+)?";
 constexpr const char* kAdvice = "write it as in 'r{radius}mm_{repeat}.csv'";
 
 const ConditionInfo* measured(const std::string& name) {
-  const auto found = std::find_if(condition_infos.begin(), condition_infos.end(),
-                                  [&](const ConditionInfo& condition) { return condition.name == name; });
-  return found == condition_infos.end() ? nullptr : &*found;
-}
-
-std::string StatedFields::*field_of(const ConditionInfo& what) {
-  return stated_conditions.at(static_cast<std::size_t>(&what - condition_infos.data()));
+  const auto found = std::ranges::find(condition_infos, name, &ConditionInfo::name);
+  return found == condition_infos.end() ? nullptr : found;
 }
 
 /// The longest beginning of `text` that is a unit of the quantity, as letters.
@@ -80,14 +73,12 @@ Condition condition_from(const std::string& text, const ConditionInfo& what, con
 /// "Radius [mm]: 15" as a radius of 15mm.
 void take_fact(const RawFact& fact, StatedFields& stated) {
   const ColumnName name = parse_column_name(fact.name);
-  const Role role = role_of(name);
-  if (role != Role::radius && role != Role::speed && role != Role::load) return;
+  const ConditionInfo* what = condition_of(role_of(name));
   std::string value = replaced(fact.value, ",", ".");
-  if (value.find_first_of("0123456789") == std::string::npos) return;
+  if (what == nullptr || value.find_first_of("0123456789") == std::string::npos) return;
   if (value.find_first_not_of("+-.0123456789eE") == std::string::npos && name.unit) value += *name.unit;
-  const ConditionInfo& what = condition_infos[role == Role::radius ? 0 : role == Role::speed ? 1 : 2];
   try {
-    if (condition_from(value, what, "file").known()) stated.*field_of(what) = value;
+    if (condition_from(value, *what, "file").known()) stated.of(what->name) = value;
   } catch (const InputError&) {  // a line that only looks like one
   }
 }
@@ -117,6 +108,13 @@ bool in_natural_order(std::string_view a, std::string_view b) {
   return left != other_left ? left < other_left : a < b;  // 07 and 7 are one number
 }
 
+std::string& StatedFields::of(std::string_view name) {
+  for (std::size_t k = 0; k < condition_infos.size(); ++k) {
+    if (condition_infos[k].name == name) return this->*stated_conditions[k];
+  }
+  return name == "repeat" ? repeat : others.emplace_back(OtherCondition{std::string(name), ""}).value;
+}
+
 NamePattern::NamePattern(const std::string& pattern) : text_(pattern) {
   const std::string lower = lower_case(pattern);
   with_extension_ = lower.ends_with(".csv") || lower.ends_with(".tsv");
@@ -142,9 +140,8 @@ NamePattern::NamePattern(const std::string& pattern) : text_(pattern) {
 void NamePattern::add_field(const std::string& name, std::string_view behind, std::string& expression) {
   if (name.empty() || name == "file")
     throw InputError("--pattern: {" + name + "} is not the name of a condition", kAdvice);
-  if (std::any_of(fields_.begin(), fields_.end(), [&](const Field& f) { return f.name == name; })) {
+  if (std::ranges::find(fields_, name, &Field::name) != fields_.end())
     throw InputError("--pattern: {" + name + "} is given twice", "use each name once; * stands for anything");
-  }
   Field field{name, ""};
   if (const ConditionInfo* what = measured(name)) {
     field.unit = unit_at_beginning(behind, what->quantity);
@@ -162,14 +159,8 @@ std::optional<StatedFields> NamePattern::read(const std::string& file_name) cons
   StatedFields stated;
   for (std::size_t k = 0; k < fields_.size(); ++k) {
     const std::string text = match[k + 1].str();
-    const Field& field = fields_[k];
-    if (const ConditionInfo* what = measured(field.name)) {
-      stated.*field_of(*what) = replaced(text, ",", ".") + field.unit;
-    } else if (field.name == "repeat") {
-      stated.repeat = text;
-    } else {
-      stated.others.push_back({field.name, text});
-    }
+    const bool is_number = measured(fields_[k].name) != nullptr;
+    stated.of(fields_[k].name) = is_number ? replaced(text, ",", ".") + fields_[k].unit : text;
   }
   return stated;
 }
@@ -185,16 +176,11 @@ StatedFields usual_fields(const std::string& file_name) {
   static const std::regex named_repeat = regex_of(begin + "(?:run|rep|repeat|no|nr|trial)[-_ ]?0*([0-9]+)(?![0-9a-z])");
   static const std::regex last_number = regex_of("[-_ (]0*([0-9]{1,3})\\)?$");
   StatedFields stated;
-  stated.radius = only_match(stem, radius);
-  stated.speed = only_match(stem, speed);
-  stated.load = only_match(stem, load);
-  if (!stated.load.empty()) {  // units of force know capitals
-    stated.load = replaced(lower_case(stated.load), "n", "N");
-  }
-  stated.radius = lower_case(stated.radius);
-  stated.speed = lower_case(stated.speed);
+  stated.radius = lower_case(only_match(stem, radius));
+  stated.speed = lower_case(only_match(stem, speed));
+  stated.load = replaced(lower_case(only_match(stem, load)), "n", "N");  // units of force know capitals
   const std::string degrees = only_match(stem, temperature);
-  if (!degrees.empty()) stated.others.push_back({"temperature", degrees.substr(0, degrees.size() - 1) + "degC"});
+  if (!degrees.empty()) stated.of("temperature") = degrees.substr(0, degrees.size() - 1) + "degC";
   stated.repeat = only_match(stem, named_repeat);
   if (stated.repeat.empty()) stated.repeat = only_match(stem, last_number);
   return stated;
@@ -212,8 +198,9 @@ StatedFields header_fields(const std::string& path) {
 ManifestRow row_from(const StatedFields& fields, const std::string& path, const std::string& source) {
   ManifestRow row;
   row.path = path;
-  for (const ConditionInfo& what : condition_infos) {
-    row.conditions.*what.member = condition_from(fields.*field_of(what), what, source);
+  for (std::size_t k = 0; k < condition_infos.size(); ++k) {
+    const ConditionInfo& what = condition_infos[k];
+    row.conditions.*what.member = condition_from(fields.*stated_conditions[k], what, source);
   }
   int repeat = 0;
   const auto [end, error] = std::from_chars(fields.repeat.data(), fields.repeat.data() + fields.repeat.size(), repeat);

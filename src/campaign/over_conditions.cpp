@@ -1,9 +1,9 @@
 #include "tribofit/campaign/over_conditions.hpp"
-#include "limits.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "limits.hpp"
 #include "statistics/thinning.hpp"
 #include "tribofit/campaign/compare.hpp"
 
@@ -44,28 +44,28 @@ OverConditions::OverConditions(std::span<const PooledGroup> groups) {
     if (count > most) most = count, most_varied = &condition;
   }
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    x_.push_back(most_varied != nullptr ? (groups[g].conditions.*(most_varied->member)).value / most_varied->si
-                                        : static_cast<double>(g));
+    x.push_back(most_varied != nullptr ? (groups[g].conditions.*(most_varied->member)).value / most_varied->si
+                                       : static_cast<double>(g));
     const std::string name = most_varied != nullptr ? without(groups[g], most_varied->member) : "";
-    auto found = std::find_if(series_.begin(), series_.end(), [&](const Series& s) { return s.name == name; });
-    if (found == series_.end()) found = series_.insert(series_.end(), {name, {}, {}});
+    auto found = std::find_if(series.begin(), series.end(), [&](const Series& s) { return s.name == name; });
+    if (found == series.end()) found = series.insert(series.end(), {name, {}, {}});
     found->groups.push_back(g);
   }
-  for (Series& one : series_) {
-    std::stable_sort(one.groups.begin(), one.groups.end(), [&](std::size_t a, std::size_t b) { return x_[a] < x_[b]; });
-    for (const std::size_t g : one.groups) one.x.push_back(x_[g]);
+  for (Series& one : series) {
+    std::stable_sort(one.groups.begin(), one.groups.end(), [&](std::size_t a, std::size_t b) { return x[a] < x[b]; });
+    for (const std::size_t g : one.groups) one.x.push_back(x[g]);
   }
   if (most_varied != nullptr) {
-    quantity_ = most_varied->meaning;
-    unit_ = most_varied->unit;
+    quantity = most_varied->meaning;
+    unit = most_varied->unit;
     return;
   }
-  for (const PooledGroup& group : groups) names_.push_back(conditions_text(group));
+  for (const PooledGroup& group : groups) names.push_back(conditions_text(group));
 }
 
 std::vector<std::size_t> OverConditions::some(std::size_t most) const {
   std::vector<std::size_t> all, out;
-  for (const Series& series : series_) all.insert(all.end(), series.groups.begin(), series.groups.end());
+  for (const Series& one : series) all.insert(all.end(), one.groups.begin(), one.groups.end());
   for (const std::size_t k : thinned(all.size(), most)) out.push_back(all[k]);
   return out;
 }

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "order.hpp"
+#include "conditions.hpp"
 #include "statistics/meta_regression.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
@@ -24,92 +24,87 @@ ManifestRow stated(const RunResult& run) {
   return row;
 }
 
-/// Columns of values and errors of one quantity over runs.
-struct Column {
-  std::vector<double> values, std_errors, systematic;
-  void add(double value, double std_error, double of_instruments = 0) {
-    values.push_back(value);
-    std_errors.push_back(std_error);
-    systematic.push_back(of_instruments);
-  }
-};
-
 PooledGroup::OfFit pool_fits(std::span<const RunResult> runs, const std::vector<std::size_t>& members,
                              const ResultFit& like) {
   PooledGroup::OfFit out{like.law, like.protocol, {}, 0};
   for (std::size_t p = 0; p < like.parameters.size(); ++p) {
     const ResultParameter& parameter = like.parameters[p];
-    Column column;
-    const ResultParameter* last = nullptr;  // with an error that is known
+    std::vector<RunValue> values;
+    const ResultParameter* last = nullptr;
     for (const std::size_t r : members) {
       const ResultFit* fit = runs[r].fit(like.law, like.protocol);
       if (fit == nullptr || p >= fit->parameters.size() || fit->parameters[p].name != parameter.name) continue;
       const ResultParameter& q = fit->parameters[p];
-      column.add(q.value, q.at_bound ? kNaN : q.std_error, q.systematic);
-      if (!q.at_bound && std::isfinite(q.value) && q.std_error > 0 && std::isfinite(q.std_error)) last = &q;
+      values.push_back({q.value, q.has_error() ? q.std_error : kNaN, q.systematic});
+      if (q.has_error() && std::isfinite(q.value)) last = &q;
     }
-    out.parameters.push_back(pool(parameter.name, parameter.unit, column.values, column.std_errors, column.systematic));
-    PooledValue& value = out.parameters.back();
+    PooledValue& value = out.parameters.emplace_back(pool(parameter.name, parameter.unit, values));
     value.effect = parameter.effect;
     if (value.runs != 1 || last == nullptr) continue;
     value.lower95 = last->lower95;  // of the one run, with its own degrees of freedom
     value.upper95 = last->upper95;
   }
-  for (const std::size_t r : members) {
+  out.best_in = static_cast<std::size_t>(std::ranges::count_if(members, [&](std::size_t r) {
     const RunResult& run = runs[r];
-    const bool best = run.best < run.fits.size() && run.fits[run.best].law == like.law &&
-                      run.fits[run.best].protocol == like.protocol;
-    out.best_in += best ? 1 : 0;
-  }
+    return run.best < run.fits.size() && run.fits[run.best].law == like.law &&
+           run.fits[run.best].protocol == like.protocol;
+  }));
   return out;
 }
 
 std::vector<PooledValue> pool_measures(std::span<const RunResult> runs, const std::vector<std::size_t>& members) {
-  Column frequency, amplitude, stick_time, slip_time, rms;
-  for (const std::size_t r : members) {
-    const RunResult& run = runs[r];
-    frequency.add(run.frequency.value, run.frequency.std_error);
-    amplitude.add(run.amplitude.value, run.amplitude.std_error);
-    stick_time.add(run.stick_time.value, run.stick_time.std_error);
-    slip_time.add(run.slip_time.value, run.slip_time.std_error);
-    // Its error is not known from one run: what runs differ by says all.
-    rms.add(run.rms_velocity, run.rms_velocity > 0 ? 1e-9 * run.rms_velocity : kNaN);
-  }
-  const auto all = [](const char* name, const char* unit, const Column& column) {
-    return pool(name, unit, column.values, column.std_errors);
+  struct Measure {
+    const char *name, *unit;
+    Estimate RunResult::*value;
   };
-  PooledValue rms_velocity = all("rms_velocity", "mm/s", rms);
-  if (rms_velocity.runs < 2) rms_velocity.std_error = rms_velocity.lower95 = rms_velocity.upper95 = kNaN;
-  rms_velocity.statistical = kNaN;
-  return {all("frequency", "Hz", frequency), all("amplitude", "mm/s", amplitude), all("stick_time", "s", stick_time),
-          all("slip_time", "s", slip_time), std::move(rms_velocity)};
+  std::vector<PooledValue> out;
+  for (const Measure& measure :
+       {Measure{"frequency", "Hz", &RunResult::frequency}, Measure{"amplitude", "mm/s", &RunResult::amplitude},
+        Measure{"stick_time", "s", &RunResult::stick_time}, Measure{"slip_time", "s", &RunResult::slip_time}}) {
+    std::vector<RunValue> values;
+    for (const std::size_t r : members) {
+      const Estimate& estimate = runs[r].*measure.value;
+      values.push_back({estimate.value, estimate.std_error});
+    }
+    out.push_back(pool(measure.name, measure.unit, values));
+  }
+  std::vector<RunValue> rms;  // its error is not known from one run: what runs differ by says all
+  for (const std::size_t r : members)
+    rms.push_back({runs[r].rms_velocity, runs[r].rms_velocity > 0 ? 1e-9 * runs[r].rms_velocity : kNaN});
+  PooledValue& value = out.emplace_back(pool("rms_velocity", "mm/s", rms));
+  if (value.runs < 2) value.std_error = value.lower95 = value.upper95 = kNaN;
+  value.statistical = kNaN;
+  return out;
+}
+
+const ResultParameter* level_of(const ResultFit& fit, std::string_view name) {
+  const auto found = std::ranges::find_if(fit.parameters,
+                                          [&](const ResultParameter& p) { return p.name == name && p.effect.empty(); });
+  return found == fit.parameters.end() ? nullptr : &*found;
 }
 
 }  // namespace
 
-PooledValue pool(std::string name, std::string unit, std::span<const double> values, std::span<const double> std_errors,
-                 std::span<const double> systematic) {
+PooledValue pool(std::string name, std::string unit, std::vector<RunValue> runs) {
   PooledValue out;
   out.name = std::move(name);
   out.unit = std::move(unit);
-  std::vector<std::size_t> known;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    if (std::isfinite(values[k]) && std::isfinite(std_errors[k]) && std_errors[k] > 0) known.push_back(k);
-  }
-  out.runs = known.size();
-  if (known.empty()) {
+  std::erase_if(runs, [](const RunValue& run) {
+    return !std::isfinite(run.value) || !std::isfinite(run.std_error) || !(run.std_error > 0);
+  });
+  out.runs = runs.size();
+  if (runs.empty()) {
     out.value = out.std_error = out.lower95 = out.upper95 = out.statistical = kNaN;
     out.between = out.mean = out.standard_error_of_mean = kNaN;
     return out;
   }
-  const auto n = static_cast<Eigen::Index>(known.size());
+  const auto n = static_cast<Eigen::Index>(runs.size());
   Eigen::VectorXd y(n), variance(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const std::size_t k = known[static_cast<std::size_t>(i)];
-    y(i) = values[k];
-    variance(i) = std_errors[k] * std_errors[k];
-    // Shared by the runs, so their mean has it in full.
-    if (!systematic.empty()) out.systematic += systematic[k] / static_cast<double>(n);
+    const RunValue& run = runs[static_cast<std::size_t>(i)];
+    y(i) = run.value;
+    variance(i) = run.std_error * run.std_error;
+    out.systematic += run.systematic / static_cast<double>(n);  // shared by the runs, so their mean has it in full
   }
   const MetaRegression mean = meta_regression(y, variance, Eigen::MatrixXd::Ones(n, 1));
   out.value = mean.coefficients(0);
@@ -119,7 +114,7 @@ PooledValue pool(std::string name, std::string unit, std::span<const double> val
   const double half = (n > 1 ? t_quantile_95(mean.degrees_of_freedom) : kNormalQuantile95) * out.std_error;
   out.lower95 = out.value - half;
   out.upper95 = out.value + half;
-  const Estimate plain = mean_of_independent({y.data(), known.size()});
+  const Estimate plain = mean_of_independent({y.data(), runs.size()});
   out.mean = plain.value;
   out.standard_error_of_mean = plain.std_error;
   return out;
@@ -142,14 +137,86 @@ std::vector<PooledGroup> pool_repeats(std::span<const RunResult> runs) {
   for (PooledGroup& group : groups) {
     for (const std::size_t r : group.runs) {
       for (const ResultFit& fit : runs[r].fits) {
-        const auto same = [&](const PooledGroup::OfFit& f) { return f.law == fit.law && f.protocol == fit.protocol; };
-        if (fit.parameters.empty() || std::any_of(group.fits.begin(), group.fits.end(), same)) continue;
+        if (fit.parameters.empty() || group.fit(fit.law, fit.protocol) != nullptr) continue;
         group.fits.push_back(pool_fits(runs, group.runs, fit));
       }
     }
     group.measures = pool_measures(runs, group.runs);
   }
   return groups;
+}
+
+const PooledGroup::OfFit* PooledGroup::fit(std::string_view law, std::string_view protocol) const {
+  const auto found = std::ranges::find_if(fits, [&](const OfFit& f) { return f.law == law && f.protocol == protocol; });
+  return found == fits.end() ? nullptr : &*found;
+}
+
+const PooledValue* pooled_value(const std::vector<PooledValue>& values, std::string_view name) {
+  const auto found =
+      std::ranges::find_if(values, [&](const PooledValue& v) { return v.name == name && v.effect.empty(); });
+  return found == values.end() ? nullptr : &*found;
+}
+
+std::optional<Estimate> pooled_mean(const std::vector<PooledValue>& values, std::string_view name) {
+  const PooledValue* value = pooled_value(values, name);
+  if (value == nullptr) return std::nullopt;
+  return Estimate{value->mean, value->standard_error_of_mean};
+}
+
+Estimate drop_of(std::span<const RunResult> runs, const PooledGroup& group, const PooledGroup::OfFit& pooled) {
+  std::vector<double> drops;
+  for (const std::size_t k : group.runs) {
+    const ResultFit* fit = runs[k].fit(pooled.law, pooled.protocol);
+    if (fit == nullptr) continue;
+    const ResultParameter *mu_s = level_of(*fit, static_level_name), *mu_k = level_of(*fit, kinetic_level_name);
+    if (mu_s != nullptr && mu_k != nullptr) drops.push_back(mu_s->value - mu_k->value);
+  }
+  return mean_of_independent(drops);
+}
+
+std::optional<Estimate> fundamental_of(const ResultReader& results, std::span<const RunResult> runs,
+                                       const PooledGroup& group) {
+  std::vector<double> values;
+  for (const std::size_t k : group.runs) {
+    const auto figures = results.figures(runs[k].position);
+    if (figures && !figures->harmonics.empty()) values.push_back(figures->harmonics.front().amplitude);
+  }
+  if (values.empty()) return std::nullopt;
+  return mean_of_independent(values);
+}
+
+std::optional<FiguresOfRun> first_figures(const ResultReader& results, std::span<const RunResult> runs,
+                                          const PooledGroup& group) {
+  for (const std::size_t k : group.runs) {
+    if (auto figures = results.figures(runs[k].position)) return FiguresOfRun{runs[k].run.name, std::move(*figures)};
+  }
+  return std::nullopt;
+}
+
+std::vector<std::pair<std::string, std::string>> kinds_of_levels(std::span<const PooledGroup> groups) {
+  std::vector<std::pair<std::string, std::string>> kinds;
+  for (const PooledGroup& group : groups) {
+    for (const PooledGroup::OfFit& fit : group.fits) {
+      const bool published = fit.protocol == to_string(Protocol::published);
+      const auto same = [&](const auto& k) { return k.second == fit.protocol && (published || k.first == fit.law); };
+      if (std::ranges::none_of(kinds, same)) kinds.emplace_back(fit.law, fit.protocol);
+    }
+  }
+  return kinds;
+}
+
+std::vector<OtherParameter> other_parameters(std::span<const PooledGroup> groups) {
+  std::vector<OtherParameter> out;
+  for (const PooledGroup& group : groups) {
+    for (const PooledGroup::OfFit& fit : group.fits) {
+      for (const PooledValue& v : fit.parameters) {
+        const auto same = [&](const OtherParameter& other) { return other.law == fit.law && other.name == v.name; };
+        const bool is_level = v.name == static_level_name || v.name == kinetic_level_name;
+        if (!is_level && v.effect.empty() && std::ranges::none_of(out, same)) out.push_back({fit.law, v.name, v.unit});
+      }
+    }
+  }
+  return out;
 }
 
 }  // namespace tribofit

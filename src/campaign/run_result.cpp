@@ -10,8 +10,6 @@
 
 #include "described_results.hpp"
 #include "ingest/content_hash.hpp"
-#include "order.hpp"
-#include "sealed.hpp"
 #include "tribofit/campaign/batch.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/text_of_file.hpp"
@@ -61,9 +59,8 @@ std::string_view to_string(RunStatus status) {
 }
 
 const ResultFit* RunResult::fit(std::string_view law, std::string_view protocol) const {
-  const auto found = std::find_if(fits.begin(), fits.end(), [&](const ResultFit& f) {
-    return f.law == law && f.protocol == protocol && !f.parameters.empty();
-  });
+  const auto found = std::ranges::find_if(
+      fits, [&](const ResultFit& f) { return f.law == law && f.protocol == protocol && !f.parameters.empty(); });
   return found == fits.end() ? nullptr : &*found;
 }
 
@@ -132,10 +129,6 @@ std::optional<RunResult> ResultReader::read(std::size_t k) const {
   } catch (const Json::exception&) {  // whole, but of another make: as if it were not there
     return std::nullopt;
   }
-}
-
-MissingRun ResultReader::missing(std::size_t k) const {
-  return {plan_.runs[k].name, plan_.runs[k].file, k};
 }
 
 std::vector<RunResult> read_results(const std::string& folder) {

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "statistics/reductions.hpp"
-#include "tribofit/campaign/group_values.hpp"
 #include "tribofit/friction/laws/all.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
@@ -20,19 +18,6 @@ std::optional<double> advantage(const RunResult& run, const std::string& first, 
   const ResultFit *a = run.fit(first, to_string(Protocol::joint)), *b = run.fit(second, to_string(Protocol::joint));
   if (a == nullptr || b == nullptr || !(a->held_out_rmse > 0) || !(b->held_out_rmse > 0)) return std::nullopt;
   return std::log(b->held_out_rmse / a->held_out_rmse);
-}
-
-/// Variance of the sum of the values of runs under one condition, and the square of it over its degrees of freedom.
-struct Spread {
-  double variance = 0, over_freedom = 0;
-};
-
-Spread spread_of(const std::vector<double>& values) {
-  const double n = static_cast<double>(values.size()), mean = mean_of(values);
-  double squares = 0;
-  for (const double value : values) squares += (value - mean) * (value - mean);
-  const double variance = n * squares / (n - 1);
-  return {variance, variance * variance / (n - 1)};
 }
 
 /// Two-sided p-value of the mean over all runs against the scatter of repeats: the conditions are those that were
@@ -47,15 +32,18 @@ double p_value_of(const std::vector<std::vector<double>>& conditions, const std:
   }
   if (single.size() > 1) strata.push_back(single);
   if (single.size() == 1) strata = {all};
-  Spread total;
+  double total = 0, over_freedom = 0;  // variance of the sum; its square over its degrees of freedom
   for (const std::vector<double>& values : strata) {
-    const Spread spread = spread_of(values);
-    total.variance += spread.variance;
-    total.over_freedom += spread.over_freedom;
+    const double n = static_cast<double>(values.size()), mean = mean_of(values);
+    double squares = 0;
+    for (const double value : values) squares += (value - mean) * (value - mean);
+    const double variance = n * squares / (n - 1);
+    total += variance;
+    over_freedom += variance * variance / (n - 1);
   }
   const double sum = mean_of(all) * static_cast<double>(all.size());
-  if (!(total.variance > 0)) return sum == 0 ? 1 : 0;
-  return t_p_value(sum / std::sqrt(total.variance), total.variance * total.variance / total.over_freedom);
+  if (!(total > 0)) return sum == 0 ? 1 : 0;
+  return t_p_value(sum / std::sqrt(total), total * total / over_freedom);
 }
 
 LawPreference preference_of(const std::vector<std::vector<double>>& conditions, const std::string& first,
@@ -77,14 +65,12 @@ LawPreference preference_of(const std::vector<std::vector<double>>& conditions, 
   return out;
 }
 
-bool is_constant(const std::string& key) {
-  const std::optional<Law> law = find_law(key);
-  return law && constant_in_slip(*law);
-}
-
 void add_preferences(std::span<const RunResult> runs, std::span<const PooledGroup> groups, Statements& out) {
-  std::vector<std::string> laws = joint_laws(groups);
-  std::erase_if(laws, is_constant);
+  std::vector<std::string> laws;
+  for (const ResultFit* fit : joint_fits(runs)) {
+    const std::optional<Law> law = find_law(fit->law);
+    if (!law || !constant_in_slip(*law)) laws.push_back(fit->law);
+  }
   if (laws.size() != 2) return;
   std::vector<std::vector<double>> all;
   for (const PooledGroup& group : groups) {
@@ -98,35 +84,28 @@ void add_preferences(std::span<const RunResult> runs, std::span<const PooledGrou
   out.overall = preference_of(all, laws[0], laws[1]);
 }
 
-/// Sums over the runs of a group.
+/// Sums over the runs of a group: each mean times what it is one over.
 struct ErrorSums {
-  ErrorStatement statement;
-  double samples = 0, below = 0, relative = 0, bins = 0, bins_below = 0;
+  ErrorStatement sum;
+  double samples = 0, bins = 0;
 };
 
 void add_run(const RunFigures& figures, std::size_t group, std::vector<ErrorSums>& sums) {
   const double samples = static_cast<double>(figures.slip_samples());
-  const double bins = static_cast<double>(
-      std::count_if(figures.bin_samples.begin(), figures.bin_samples.end(), [](std::size_t n) { return n > 0; }));
+  const double bins = static_cast<double>(std::ranges::count_if(figures.bin_samples, [](auto n) { return n > 0; }));
   for (const ErrorCurve& curve : figures.errors) {
-    auto found = std::find_if(sums.begin(), sums.end(), [&](const ErrorSums& s) {
-      return s.statement.law == curve.law && s.statement.protocol == curve.protocol;
-    });
-    if (found == sums.end()) {
-      sums.emplace_back();
-      found = sums.end() - 1;
-      found->statement.group = group;
-      found->statement.law = curve.law;
-      found->statement.protocol = curve.protocol;
-    }
-    ++found->statement.runs;
-    found->samples += samples;
-    found->below += samples * curve.below_limit;
-    found->relative += samples * curve.mean_relative;
-    found->bins += bins;
-    found->bins_below += bins * curve.bins_below_limit;
-    found->statement.largest_of_bins = std::max(found->statement.largest_of_bins, curve.largest_of_bins);
-    found->statement.max_relative = std::max(found->statement.max_relative, curve.max_relative);
+    auto at = std::ranges::find_if(
+        sums, [&](const ErrorSums& s) { return s.sum.law == curve.law && s.sum.protocol == curve.protocol; });
+    if (at == sums.end()) at = sums.insert(at, {{.group = group, .law = curve.law, .protocol = curve.protocol}});
+    ErrorStatement& sum = at->sum;
+    at->samples += samples;
+    at->bins += bins;
+    ++sum.runs;
+    sum.below_limit += samples * curve.below_limit;
+    sum.mean_relative += samples * curve.mean_relative;
+    sum.bins_below_limit += bins * curve.bins_below_limit;
+    sum.largest_of_bins = std::max(sum.largest_of_bins, curve.largest_of_bins);
+    sum.max_relative = std::max(sum.max_relative, curve.max_relative);
   }
 }
 
@@ -141,22 +120,14 @@ Statements statements_of(const ResultReader& results, std::span<const RunResult>
       if (const auto figures = results.figures(runs[k].position)) add_run(*figures, g, sums);
     }
     for (ErrorSums& s : sums) {
-      s.statement.below_limit = s.below / s.samples;
-      s.statement.mean_relative = s.relative / s.samples;
-      s.statement.bins_below_limit = s.bins_below / s.bins;
-      out.errors.push_back(std::move(s.statement));
+      s.sum.below_limit /= s.samples;
+      s.sum.mean_relative /= s.samples;
+      s.sum.bins_below_limit /= s.bins;
+      out.errors.push_back(std::move(s.sum));
     }
   }
   add_preferences(runs, groups, out);
   return out;
-}
-
-double scaled_load(double full_load, double sample_area, double blocks, double block_area) {
-  return full_load * sample_area / (blocks * block_area);
-}
-
-double pad_area_for(double sample_load, double full_load, double sample_area) {
-  return full_load * sample_area / sample_load;
 }
 
 }  // namespace tribofit

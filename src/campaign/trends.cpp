@@ -1,5 +1,4 @@
 #include "tribofit/campaign/trends.hpp"
-#include "limits.hpp"
 
 #include <fmt/format.h>
 
@@ -11,9 +10,9 @@
 #include <optional>
 #include <set>
 
-#include "condition_columns.hpp"
+#include "conditions.hpp"
+#include "limits.hpp"
 #include "statistics/meta_regression.hpp"
-#include "tribofit/ingest/units.hpp"
 #include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
@@ -23,38 +22,26 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-std::size_t count_values(const std::vector<std::optional<double>>& numbers) {
+/// Whether a line over a condition means anything: it takes two values, and where its scale is known they are further
+/// apart than readings of one value.
+bool varies(const ConditionColumn& column) {
   std::set<double> values;
-  for (const auto& number : numbers) {
+  for (const auto& number : column.number) {
     if (number) values.insert(*number);
   }
-  return values.size();
-}
-
-/// A condition with a unit that stays within what readings of one value differ by: no line over it means anything.
-bool hardly_varies(const ConditionColumn& column) {
-  if (column.unit.empty()) return false;  // of a further column the scale is not known
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const auto& number : column.number) {
-    if (!number) continue;
-    low = std::min(low, *number);
-    high = std::max(high, *number);
-  }
-  return high - low <= kVaries * std::max(std::abs(low), std::abs(high));
+  if (values.size() < 2) return false;
+  const double low = *values.begin(), high = *values.rbegin();
+  return column.unit.empty() || high - low > kVaries * std::max(std::abs(low), std::abs(high));
 }
 
 /// omega r, by which the surfaces pass one another while the block sticks.
 ConditionColumn sliding_speed(const std::vector<ConditionColumn>& columns, std::size_t runs) {
   ConditionColumn out{"sliding speed", "mm/s", {}, std::vector<std::optional<double>>(runs)};
-  const auto find = [&](const char* name) {
-    return std::find_if(columns.begin(), columns.end(), [&](const ConditionColumn& c) { return c.name == name; });
-  };
-  const auto radius = find("radius"), speed = find("speed");
+  const auto radius = std::ranges::find(columns, "radius", &ConditionColumn::name);
+  const auto speed = std::ranges::find(columns, "speed", &ConditionColumn::name);
   if (radius == columns.end() || speed == columns.end()) return out;
   for (std::size_t r = 0; r < runs; ++r) {
-    if (radius->number[r] && speed->number[r]) {
-      out.number[r] = *radius->number[r] * *speed->number[r] * kRpm;
-    }
+    if (radius->number[r] && speed->number[r]) out.number[r] = *radius->number[r] * *speed->number[r] * kRpm;
   }
   return out;
 }
@@ -66,8 +53,7 @@ std::vector<ConditionColumn> numbers_of(std::span<const RunResult> runs) {
   ConditionColumn order{"order", "", {}, {}};
   for (const RunResult& run : runs) order.number.push_back(run.order);
   all.push_back(std::move(order));
-  std::erase_if(all,
-                [](const ConditionColumn& column) { return count_values(column.number) < 2 || hardly_varies(column); });
+  std::erase_if(all, [](const ConditionColumn& column) { return !varies(column); });
   return all;
 }
 
@@ -80,24 +66,24 @@ double largest(const ConditionColumn& column) {
 
 double correlation(const ConditionColumn& a, const ConditionColumn& b) {
   const double unit_a = largest(a), unit_b = largest(b);  // squares of the numbers themselves might overflow
-  double n = 0, mean_a = 0, mean_b = 0;
+  std::vector<double> both_a, both_b;
   for (std::size_t r = 0; r < a.number.size(); ++r) {
     if (!a.number[r] || !b.number[r]) continue;
-    n += 1;
-    mean_a += *a.number[r] / unit_a;
-    mean_b += *b.number[r] / unit_b;
+    both_a.push_back(*a.number[r] / unit_a);
+    both_b.push_back(*b.number[r] / unit_b);
   }
-  mean_a /= n;
-  mean_b /= n;
+  const auto mean = [](const std::vector<double>& x) {
+    return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+  };
+  const double mean_a = mean(both_a), mean_b = mean(both_b);
   double aa = 0, bb = 0, ab = 0;
-  for (std::size_t r = 0; r < a.number.size(); ++r) {
-    if (!a.number[r] || !b.number[r]) continue;
-    const double off_a = *a.number[r] / unit_a - mean_a, off_b = *b.number[r] / unit_b - mean_b;
+  for (std::size_t r = 0; r < both_a.size(); ++r) {
+    const double off_a = both_a[r] - mean_a, off_b = both_b[r] - mean_b;
     aa += off_a * off_a;
     bb += off_b * off_b;
     ab += off_a * off_b;
   }
-  return n > 2 && aa > 0 && bb > 0 ? ab / (std::sqrt(aa) * std::sqrt(bb)) : 0;
+  return both_a.size() > 2 && aa > 0 && bb > 0 ? ab / (std::sqrt(aa) * std::sqrt(bb)) : 0;
 }
 
 std::optional<Trend> trend_of(std::span<const RunResult> runs, const ResultFit& like, std::size_t parameter,
@@ -108,9 +94,7 @@ std::optional<Trend> trend_of(std::span<const RunResult> runs, const ResultFit& 
     const ResultFit* fit = runs[r].fit(like.law, like.protocol);
     if (fit == nullptr || parameter >= fit->parameters.size() || !column.number[r]) continue;
     const ResultParameter& p = fit->parameters[parameter];
-    if (p.name != like.parameters[parameter].name || !std::isfinite(p.std_error) || !(p.std_error > 0) || p.at_bound) {
-      continue;
-    }
+    if (p.name != like.parameters[parameter].name || !p.has_error()) continue;
     x.push_back(*column.number[r] / unit);
     y.push_back(p.value);
     variance.push_back(p.std_error * p.std_error);
@@ -155,14 +139,12 @@ void correct(std::vector<Trend>& trends) {
 
 std::string sentence(const Confounded& pair) {
   const bool order = pair.b == "order";
-  const std::string both = fmt::format("{} and {} change together (correlation {})", pair.a,
+  const std::string both = fmt::format("{} and {} change together (correlation {}): ", pair.a,
                                        order ? "the order of the runs" : pair.b, fixed(pair.correlation, 2));
   if (order)
-    return both + ": wear or running-in may look like a trend over " + pair.a + "; make the runs in random order";
-  if (pair.b == "sliding speed") {
-    return both + ": a trend over one may be one over the other; run the same sliding speed at two radii";
-  }
-  return both + ": a trend over one may be one over the other; vary one while the other stays";
+    return both + "wear or running-in may look like a trend over " + pair.a + "; make the runs in random order";
+  return both + "a trend over one may be one over the other; " +
+         (pair.b == "sliding speed" ? "run the same sliding speed at two radii" : "vary one while the other stays");
 }
 
 }  // namespace
@@ -186,8 +168,7 @@ Trends find_trends(std::span<const RunResult> runs) {
       out.warnings.push_back(sentence(out.confounded.back()));
     }
   }
-  const bool ordered =
-      std::any_of(runs.begin(), runs.end(), [](const RunResult& run) { return run.order.has_value(); });
+  const bool ordered = std::ranges::any_of(runs, [](const RunResult& run) { return run.order.has_value(); });
   if (!ordered && !out.trends.empty()) {
     out.warnings.push_back(
         "the order of the runs is not stated: wear may look like a trend; add a column 'order' or 'date' to the "

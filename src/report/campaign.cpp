@@ -8,7 +8,6 @@
 
 #include "campaign/described_results.hpp"
 #include "campaign/kept_samples.hpp"
-#include "campaign/condition_cells.hpp"
 #include "json_parts.hpp"
 #include "numbers.hpp"
 #include "tribofit/output/whole_file.hpp"
@@ -153,15 +152,15 @@ CampaignSummary write_summary(const ResultReader& results, const std::string& co
   CampaignSummary summary;
   for (std::size_t k = 0; k < results.size(); ++k) {
     const auto result = results.read(k);
-    const MissingRun missing = result ? MissingRun{} : results.missing(k);
-    csv.write(columns.line(result ? summary_row(*result) : summary_row(missing.name, missing.file, "missing")));
+    const PlannedRun& planned = results.plan()[k];
+    csv.write(columns.line(result ? summary_row(*result) : summary_row(planned.name, planned.file, "missing")));
     json.write((k == 0 ? "\n" : ",\n") + line_of(result ? result_json(*result)
-                                                        : object("name", missing.name, "file", missing.file, "status",
+                                                        : object("name", planned.name, "file", planned.file, "status",
                                                                  "missing", "message", nullptr)));
     const bool ok = result && result->run.status == RunStatus::ok;
     ++(ok ? summary.fitted : result ? summary.failed : summary.missing);
     if (!ok) {
-      summary.errors.push_back(result ? error_line(result->run) : missing.file + ": there is no result of it yet");
+      summary.errors.push_back(result ? error_line(result->run) : planned.file + ": there is no result of it yet");
     }
   }
   json.write("\n],\n\"problems\": " + line_of(results.problems()));

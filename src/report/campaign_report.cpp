@@ -6,7 +6,6 @@
 #include "campaign_tables.hpp"
 #include "report/charts/campaign_figures.hpp"
 #include "report_parts.hpp"
-#include "tribofit/campaign/group_values.hpp"
 #include "tribofit/report/campaign.hpp"
 
 namespace tribofit {
@@ -33,14 +32,14 @@ ReportTable listed_runs(const DrawnCampaign& campaign) {
   std::size_t next = 0;
   for (std::size_t k = 0; k < campaign.results.size(); ++k) {
     const bool there = next < campaign.runs.size() && campaign.runs[next].position == k;
-    runs.rows.push_back(there ? run_row(campaign.runs[next++]) : run_row(campaign.results.missing(k)));
+    runs.rows.push_back(there ? run_row(campaign.runs[next++]) : run_row(campaign.results.plan()[k]));
   }
   return runs;
 }
 
 ReportSection runs_section(const DrawnCampaign& campaign, ReportTable runs) {
   ReportSection section{"runs", "The runs", {}, Medium::page};
-  for (const std::string& law : joint_laws(campaign.groups)) section.add(scatter_chart(campaign, law));
+  for (const ResultFit* fit : joint_fits(campaign.runs)) section.add(scatter_chart(campaign, fit->law));
   runs.caption = fmt::format("{} runs", campaign.results.size());
   section.add(std::move(runs));
   ReportTable warnings("Warnings of the runs", "summary.json");

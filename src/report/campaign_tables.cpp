@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "numbers.hpp"
-#include "tribofit/campaign/earlier.hpp"
+#include "tribofit/campaign/compare.hpp"
 
 namespace tribofit {
 namespace {
@@ -229,8 +229,8 @@ std::vector<std::string> run_row(const RunResult& r) {
   return row;
 }
 
-std::vector<std::string> run_row(const MissingRun& run) {
-  return {run.name, "", "", "", "missing", "", "", "", "", "", ""};
+std::vector<std::string> run_row(const PlannedRun& missing) {
+  return {missing.name, "", "", "", "missing", "", "", "", "", "", ""};
 }
 
 std::vector<std::string> trend_sentences(const Trends& trends) {

@@ -26,7 +26,7 @@ ReportTable repeats_table(std::span<const PooledGroup> groups);
 /// The runs with their status and best fit: a table without rows, and the row of a run with or without a result.
 ReportTable runs_table(const std::string& friction_unit);
 std::vector<std::string> run_row(const RunResult& run);
-std::vector<std::string> run_row(const MissingRun& run);
+std::vector<std::string> run_row(const PlannedRun& missing);
 
 /// Significant trends, and what is not said in the warnings.
 std::vector<std::string> trend_sentences(const Trends& trends);

@@ -3,8 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "campaign/condition_cells.hpp"
-#include "tribofit/campaign/group_values.hpp"
+#include "campaign/described_results.hpp"
 
 namespace tribofit {
 namespace {

@@ -8,7 +8,6 @@
 #include "campaign/described_results.hpp"
 #include "json_parts.hpp"
 #include "numbers.hpp"
-#include "tribofit/campaign/earlier.hpp"
 #include "tribofit/output/whole_file.hpp"
 #include "tribofit/version.hpp"
 

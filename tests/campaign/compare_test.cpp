@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "command.hpp"
-#include "tribofit/campaign/statements.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
 namespace {
@@ -211,15 +210,6 @@ TEST(Earlier, BadTablesAreRefusedWithFileLineAndColumn) {
       EXPECT_FALSE(error.advice().empty()) << bad.name;
     }
   }
-}
-
-/// [D] prints F0 = 18 kN and F1 = 50 N for a sample of 10 mm diameter; n and S_b0, which it does not, follow.
-TEST(LoadScaling, ThePadAreaThatGivesThePrintedLoad) {
-  const double sample = 3.14159265358979 / 4 * 0.010 * 0.010;
-  const double pad = pad_area_for(50, 18e3, sample);
-  EXPECT_NEAR(pad, 282.74e-4, 0.01e-4);
-  EXPECT_NEAR(scaled_load(18e3, sample, 18, pad / 18), 50, 1e-9);
-  EXPECT_NEAR(18e3 / pad, 50 / sample, 1e-6);  // the same pressure
 }
 
 }  // namespace

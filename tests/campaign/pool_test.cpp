@@ -154,7 +154,7 @@ TEST(SharedFit, CoversWhatIsCommonAndWhatIsFree) {
   // alpha is the same everywhere, mu_s goes with the radius, mu_k is each run's own.
   Laboratory laboratory(23);
   const std::map<double, double> mu_s = {{9, 0.521}, {12, 0.512}, {15, 0.509}, {18, 0.5}};
-  const Sharing sharing{{share_from("alpha"), vary_from("mu_s:radius")}};
+  const Sharing sharing = sharing_from({"alpha"}, {"mu_s:radius"});
   int inside[3] = {}, all[3] = {};
   double own = 0, joint = 0;
   for (int campaign = 0; campaign < 300; ++campaign) {
@@ -198,20 +198,20 @@ TEST(SharedFit, CoversWhatIsCommonAndWhatIsFree) {
 TEST(SharedFit, NamesWhatIsNotKnown) {
   Laboratory laboratory(2);
   const std::vector<RunResult> runs = {laboratory.run(kTruth, 9), laboratory.run(kTruth, 15)};
-  const auto message = [&](const Sharing& sharing) -> std::string {
+  const auto message = [&](const std::vector<std::string>& share, const std::vector<std::string>& vary) -> std::string {
     try {
-      fit_shared(runs, sharing);
+      fit_shared(runs, sharing_from(share, vary));
     } catch (const InputError& error) {
       return error.what();
     }
     return "";
   };
-  EXPECT_NE(message({{share_from("alhpa")}}).find("did you mean alpha?"), std::string::npos);
-  EXPECT_NE(message({{vary_from("mu_s:raduis")}}).find("did you mean radius?"), std::string::npos);
-  EXPECT_NE(message({{share_from("alpha"), vary_from("alpha:radius")}}).find("named twice"), std::string::npos);
-  EXPECT_THROW(vary_from("mu_s"), InputError);
-  EXPECT_THROW(vary_from("mu_s:"), InputError);
-  EXPECT_THROW(share_from("mu_s:radius"), InputError);
+  EXPECT_NE(message({"alhpa"}, {}).find("did you mean alpha?"), std::string::npos);
+  EXPECT_NE(message({}, {"mu_s:raduis"}).find("did you mean radius?"), std::string::npos);
+  EXPECT_NE(message({"alpha"}, {"alpha:radius"}).find("named twice"), std::string::npos);
+  EXPECT_THROW(sharing_from({}, {"mu_s"}), InputError);
+  EXPECT_THROW(sharing_from({}, {"mu_s:"}), InputError);
+  EXPECT_THROW(sharing_from({"mu_s:radius"}, {}), InputError);
 }
 
 TEST(Trends, CoverTheSlopeAndStaySilentOnNone) {
@@ -269,7 +269,7 @@ TEST(SharedFit, SaysWhereRunsHardlyShare) {
   Laboratory laboratory(41);
   std::vector<RunResult> runs;
   for (int k = 0; k < 8; ++k) runs.push_back(laboratory.run(kTruth, 15, k < 4 ? 0 : 40));
-  const std::vector<SharedFit> fits = fit_shared(runs, {{share_from("alpha")}});
+  const std::vector<SharedFit> fits = fit_shared(runs, sharing_from({"alpha"}, {}));
   ASSERT_EQ(fits[0].notes.size(), 1u);
   EXPECT_NE(fits[0].notes[0].find("--vary alpha:CONDITION"), std::string::npos);
 }

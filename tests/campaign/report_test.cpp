@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "runs.hpp"
-#include "tribofit/campaign/earlier.hpp"
 #include "tribofit/report/campaign.hpp"
 
 namespace {

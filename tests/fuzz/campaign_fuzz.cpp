@@ -3,10 +3,10 @@
 #include <cmath>
 #include <filesystem>
 
+#include "campaign/kept_samples.hpp"
 #include "scratch.hpp"
 #include "targets.hpp"
 #include "tribofit/campaign/batch.hpp"
-#include "tribofit/campaign/earlier.hpp"
 #include "tribofit/campaign/pooled.hpp"
 #include "tribofit/campaign/run_result.hpp"
 

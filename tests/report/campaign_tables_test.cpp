@@ -88,7 +88,7 @@ TEST(CampaignTables, RunsNameTheParametersOfTheirBestLaw) {
               ElementsAre("0.5090 +/- 0.0010", "0.3180 +/- 0.0020", "v_s 17.20 +/- 0.30 mm/s"));
   run.run.status = RunStatus::unreadable;
   EXPECT_THAT(law_cells(table, run_row(run)), ElementsAre("", "", ""));
-  EXPECT_THAT(law_cells(table, run_row(MissingRun{"a", "a.csv", 0})), ElementsAre("", "", ""));
+  EXPECT_THAT(law_cells(table, run_row(PlannedRun{"a", "a.csv", ""})), ElementsAre("", "", ""));
 }
 
 }  // namespace

@@ -60,6 +60,9 @@ struct BatchHooks {
   std::function<void(const BatchProgress&)> progress;  ///< called by one thread at a time; may be empty
 };
 
+/// Why the analysis could not be done; empty where it was.
+std::string failure_of(const Identification& result);
+
 /// Path of the result of a run.
 std::string result_path(const std::string& results, const std::string& name);
 
@@ -79,5 +82,12 @@ BatchOutcome run_batch(const Campaign& campaign, const BatchOptions& options, co
 /// campaign.json: the runs in order, each with the hash of its settings, the folder they lie in, and the rows of the
 /// manifest that are no runs. Every shard of a campaign writes the same.
 std::string campaign_json(const Campaign& campaign, const BatchOptions& options);
+
+/// Makes a shard work to the plan that another one wrote: the runs of campaign.json in its order, so that a folder that
+/// changes meanwhile moves no run from one shard to another. Runs that are new are left out, with a note; those whose
+/// file is gone stay, with a problem. A plan of which every run has a result is done: the campaign is as it was found.
+/// Returns whether there is a plan to follow. Throws InputError where its runs were planned with other options or
+/// conditions: every shard must have the same.
+bool follow_plan(const BatchOptions& options, Campaign& campaign);
 
 }  // namespace tribofit

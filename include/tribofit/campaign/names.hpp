@@ -14,6 +14,9 @@ namespace tribofit {
 struct StatedFields {
   std::string radius, speed, load, repeat;
   std::vector<OtherCondition> others;
+
+  /// The one of that name; a further condition is added.
+  std::string& of(std::string_view name);
 };
 /// Those of conditions, in the order of condition_infos.
 inline constexpr std::array stated_conditions = {&StatedFields::radius, &StatedFields::speed, &StatedFields::load};

@@ -9,13 +9,14 @@
 #include <string_view>
 #include <vector>
 
-#include "tribofit/campaign/condensed.hpp"
 #include "tribofit/campaign/figures.hpp"
 #include "tribofit/ingest/conditions.hpp"
 #include "tribofit/ingest/manifest.hpp"
 #include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit {
+
+struct CondensedRun;
 
 /// How the work on a run ended.
 enum class RunStatus {
@@ -49,6 +50,9 @@ struct ResultParameter {
   double profile_lower95 = 0, profile_upper95 = 0;
   double start = 0, lower = 0, upper = 0;  ///< where the search began, and its bounds
   bool at_bound = false, determined = true;
+
+  /// Its error is known, and it is not on a bound.
+  bool has_error() const { return std_error > 0 && std_error < std::numeric_limits<double>::infinity() && !at_bound; }
 };
 
 /// Name by which a parameter or a measure is known in tables: "mu_s", and "runout.A" for one of an effect.
@@ -116,12 +120,6 @@ struct RunResult {
 /// Of each law the first joint fit with parameters, to know them; with their covariance, where that is asked for.
 std::vector<const ResultFit*> joint_fits(std::span<const RunResult> runs, bool with_covariance = false);
 
-/// A run without a whole result that was made with the settings of the campaign.
-struct MissingRun {
-  std::string name, file;
-  std::size_t position = 0;
-};
-
 /// A JSON object with its own checksum as last key, which shows a cut or damaged file.
 std::string sealed(std::string_view json);
 
@@ -171,7 +169,6 @@ class ResultReader {
   std::optional<RunFigures> figures(std::size_t k) const;
   /// The condensed run kept with it; nothing where it could not be analysed, or was kept by an earlier version.
   std::optional<CondensedRun> condensed(std::size_t k) const;
-  MissingRun missing(std::size_t k) const;
 
  private:
   std::string folder_;

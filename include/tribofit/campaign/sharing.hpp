@@ -20,9 +20,9 @@ struct Sharing {
   std::vector<Common> common;
 };
 
-/// Reads "alpha" (--share) or "mu_s:radius" (--vary; the condition is required). Throws InputError.
-Sharing::Common share_from(const std::string& text);
-Sharing::Common vary_from(const std::string& text);
+/// Reads "alpha" (share) and "mu_s:radius" (vary; the condition is required). Throws InputError, also for a parameter
+/// that is named twice.
+Sharing sharing_from(const std::vector<std::string>& share, const std::vector<std::string>& vary);
 
 /// A campaign in which some parameters are common to runs.
 struct SharedFit {
@@ -30,6 +30,11 @@ struct SharedFit {
     std::string name, condition;      ///< condition empty: one value for all runs
     std::vector<std::string> levels;  ///< values of the condition, as shown; one empty text where there is none
     std::vector<PooledValue> values;  ///< one a level
+
+    /// "mu_s at radius 9 mm".
+    std::string at(std::size_t level) const {
+      return condition.empty() ? name : name + " at " + condition + " " + levels[level];
+    }
   };
   /// Parameters of one run, given what is common: those that are free move with the common ones, as far as the run's
   /// own data tie them together.

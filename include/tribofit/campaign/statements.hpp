@@ -42,11 +42,4 @@ struct Statements {
 Statements statements_of(const ResultReader& results, std::span<const RunResult> runs,
                          std::span<const PooledGroup> groups);
 
-/// Load on a sample that gives it the pressure of the original brake pad, F1 = F0 S_b1/(n S_b0) ([D] Eq 1) [N].
-/// full_load: on the pad [N]; sample_area: of the sample [m^2]; blocks: on a pad; block_area: of each [m^2].
-double scaled_load(double full_load, double sample_area, double blocks, double block_area);
-
-/// Area of all blocks of the pad, n S_b0, for which Eq 1 gives this load on the sample [m^2].
-double pad_area_for(double sample_load, double full_load, double sample_area);
-
 }  // namespace tribofit

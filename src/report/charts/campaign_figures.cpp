@@ -9,7 +9,6 @@
 #include "report/charts/styles.hpp"
 #include "report/numbers.hpp"
 #include "statistics/thinning.hpp"
-#include "tribofit/campaign/group_values.hpp"
 #include "tribofit/campaign/over_conditions.hpp"
 
 namespace tribofit {
@@ -30,7 +29,7 @@ class MeansChart {
   MeansChart(const DrawnCampaign& campaign, const OverConditions& over, std::string id, std::string title)
       : of_(campaign), over_(over), chart_{.id = std::move(id), .title = std::move(title)} {
     chart_.note = "Means over repeats; bars: one standard error.";
-    chart_.x = {.quantity = over.quantity(), .unit = over.unit(), .names = over.names()};
+    chart_.x = {.quantity = over.quantity, .unit = over.unit, .names = over.names};
     chart_.panels.clear();
   }
   /// What is added from now on stands in a panel of its own.
@@ -41,9 +40,9 @@ class MeansChart {
   /// value: of a group, nothing where there is none.
   template <class Value>
   MeansChart& add(const std::string& name, std::size_t kind, Value value) {
-    const bool alone = over_.series().size() == 1;
+    const bool alone = over_.series.size() == 1;
     std::size_t k = 0;
-    for (const OverConditions::Series& series : over_.series()) {
+    for (const OverConditions::Series& series : over_.series) {
       ChartLine& line = bars(alone || series.name.empty() ? name : name + ", " + series.name, marked(kind));
       if (!alone) line.stroke.dash = stroke_of(k++).dash;
       for (std::size_t i = 0; i < series.groups.size(); ++i) {
@@ -64,7 +63,7 @@ class MeansChart {
     for (const ComparedValue& v : of_.earlier->values) {
       if (v.earlier.name != name || met[v.group]) continue;
       met[v.group] = true;
-      line.add(over_.x_of(v.group), v.earlier.value, v.earlier.std_error);
+      line.add(over_.x[v.group], v.earlier.value, v.earlier.std_error);
     }
     return *this;
   }
@@ -96,7 +95,7 @@ Chart levels_chart(const DrawnCampaign& campaign, const OverConditions& over) {
       const std::string &law = kinds[k].first, &protocol = kinds[k].second;
       chart.add(protocol == to_string(Protocol::published) ? protocol_text(Protocol::published) : law + " law", k,
                 [&](std::size_t g) {
-                  const PooledGroup::OfFit* fit = fit_of(campaign.groups[g], law, protocol);
+                  const PooledGroup::OfFit* fit = campaign.groups[g].fit(law, protocol);
                   return fit == nullptr ? Maybe{} : value(campaign.groups[g], *fit);
                 });
     }
@@ -122,7 +121,7 @@ Chart other_parameters_chart(const DrawnCampaign& campaign, const OverConditions
   for (const OtherParameter& other : other_parameters(campaign.groups)) {
     const auto value_by = [&](Protocol protocol) {
       return [&, protocol](std::size_t g) {
-        const PooledGroup::OfFit* own = fit_of(campaign.groups[g], other.law, to_string(protocol));
+        const PooledGroup::OfFit* own = campaign.groups[g].fit(other.law, to_string(protocol));
         return own == nullptr ? Maybe{} : pooled_mean(own->parameters, other.name);
       };
     };
