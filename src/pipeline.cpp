@@ -15,11 +15,11 @@
 #include "fit/requested_effects.hpp"
 #include "ingest/declared_conditions.hpp"
 #include "segmentation/obstacles.hpp"
-#include "study/fit_machines.hpp"
 #include "tribofit/execution/parallel.hpp"
 #include "tribofit/execution/stop.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/kinematics/clock_offset.hpp"
+#include "tribofit/study/twin.hpp"
 
 namespace tribofit {
 
@@ -252,9 +252,7 @@ TwinIdentification identify_twin(const TraceInput& input, const IdentifyOptions&
 TwinIdentification identify_twin(const TraceInput& input, const IdentifyOptions& options, const TwinOptions& more) {
   TwinIdentification out{prepare(input.path, taken(input, options), options, options.motion, Purpose::rig), {}, {}};
   require_formulas(options.effects, out.trace.motion, out.trace);
-  require_stick_slip(out.trace);
-  fit_machines(options, out);
-  compare_machines(options, more, out);
+  add_twins(options, more, out);
   return out;
 }
 

@@ -50,12 +50,7 @@ Simulation::Simulation(const Rig& rig, const Drive& drive, const FrictionModel& 
   } else {
     begin_stick();
   }
-  motion_.rate = options_.rate;
-  motion_.settled = options_.settle > 0;
-  motion_.radius = drive.radius;
-  motion_.stated_speed = drive.speed.constant ? drive.speed.speed(0) : kNaN;
-  motion_.mean_load = drive.mean_load;
-  motion_.mean_temperature = drive.mean_temperature;
+  state_conditions(Setup(rig, drive, model), options_.rate, options_.settle > 0, motion_);
 }
 
 /// Starts moving, or creeping, in the direction of v_r given.
@@ -250,12 +245,7 @@ void Simulation::write_sample(double t, double x, double v, double friction, boo
     motion_.acceleration.push_back((load * friction - rig.damping * v - rig.stiffness * x) / rig.mass);
   if (kept.relative_velocity) motion_.relative_velocity.push_back(sticks ? 0 : setup_.disc_velocity(t) - v);
   motion_.friction.push_back(friction);
-  if (kept.disc) {
-    motion_.disc_speed.push_back(setup_.drive.speed.speed(t));
-    motion_.disc_angle.push_back(setup_.drive.speed.angle(t));
-  }
-  if (setup_.drive.load) motion_.load.push_back(load);
-  if (setup_.drive.temperature) motion_.temperature.push_back(setup_.temperature(t));
+  write_conditions(setup_, t, kept.disc, motion_);
   motion_.sticks.push_back(sticks || friction_.acts_in_stick() ? 1 : 0);
 }
 

@@ -6,6 +6,25 @@
 
 namespace tribofit {
 
+void state_conditions(const Setup& setup, double rate, bool settled, SimulatedMotion& motion) {
+  const Drive& drive = setup.drive;
+  motion.rate = rate;
+  motion.settled = settled;
+  motion.radius = drive.radius;
+  if (drive.speed.constant) motion.stated_speed = setup.constant_speed;
+  motion.mean_load = drive.mean_load;
+  motion.mean_temperature = drive.mean_temperature;
+}
+
+void write_conditions(const Setup& setup, double t, bool disc, SimulatedMotion& motion) {
+  if (disc) {
+    motion.disc_speed.push_back(setup.drive.speed.speed(t));
+    motion.disc_angle.push_back(setup.drive.speed.angle(t));
+  }
+  if (setup.drive.load) motion.load.push_back(setup.load(t));
+  if (setup.drive.temperature) motion.temperature.push_back(setup.temperature(t));
+}
+
 void SlipFlow::begin(double t, const BlockState& y, double direction, double stick_time, double slid) {
   direction_ = direction;
   stick_time_ = stick_time;

@@ -11,6 +11,7 @@
 #include "tribofit/friction/dynamics.hpp"
 #include "tribofit/oscillator/drive.hpp"
 #include "tribofit/oscillator/rig.hpp"
+#include "tribofit/oscillator/simulate.hpp"
 #include "tribofit/segmentation/stroke_memory.hpp"
 
 namespace tribofit {
@@ -49,6 +50,11 @@ struct Setup {
   double load(double t) const { return drive.load ? drive.load(t) : drive.mean_load; }
   double temperature(double t) const { return drive.temperature ? drive.temperature(t) : drive.mean_temperature; }
 };
+
+/// What a motion states of its drive.
+void state_conditions(const Setup& setup, double rate, bool settled, SimulatedMotion& motion);
+/// The sample of what drives the block, beside its own. disc: its speed and angle, too.
+void write_conditions(const Setup& setup, double t, bool disc, SimulatedMotion& motion);
 
 /// How far a motion has slid since it reversed, and the strokes before.
 class StrokesSoFar {

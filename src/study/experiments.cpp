@@ -1,10 +1,10 @@
-#include "experiments.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "limits.hpp"
+#include "open_question.hpp"
 #include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
@@ -31,28 +31,44 @@ bool takes_revolutions(const OpenQuestion& question) {
   });
 }
 
-/// Makes the runs of experiments: as long as they need to be, within the time.
+/// Makes experiments whose runs are as long as they need to be, within the time.
 class ExperimentMaker {
  public:
-  ExperimentMaker(const OpenQuestion& question, const Identification& trace, const Means& means)
-      : question_(question), means_(means), longest_(means.longest > 0 ? means.longest : kUsualLongest) {
-    const Segmentation& s = trace.segmentation;
-    own_ = conditions_of_record(question, trace);
+  ExperimentMaker(const OpenQuestion& question, const Means& means)
+      : means_(means), own_(question.own_conditions()), turns_(takes_revolutions(question)) {
+    const Segmentation& s = question.own().segmentation;
     if (!means.rates.empty()) own_.rate = *std::max_element(means.rates.begin(), means.rates.end());
     stick_ = s.stick_time.value;
     slip_ = s.slip_time.value;
     cycles_ = std::clamp(static_cast<double>(s.cycles.size()), kFewestPlannedCycles, kMostPlannedCycles);
   }
 
-  const RunConditions& own() const { return own_; }
+  std::vector<Experiment> make(bool load_known) {
+    if (means_.tap) made_.push_back({.runs = {}, .tap = own_.rate});
+    if (means_.lift) made_.push_back({.runs = {}, .lift = true});
+    change_speed();
+    change_radius();
+    if (load_known) change(means_.loads, &RunConditions::load);
+    change(means_.springs, &RunConditions::stiffness);
+    if (means_.mass_below > 0) change({means_.mass_below}, &RunConditions::mass_below);
+    if (means_.longest_pause > 0) made_.push_back({{with_pauses()}});
+    if (means_.reversing) made_.push_back({{reversed()}});
+    constexpr double kLonger = 3;
+    made_.push_back({{timed(own_, 1, kLonger)}});
+    return std::move(made_);
+  }
+
+ private:
+  static constexpr double kCyclesBetweenPauses = 6, kCyclesOfTurn = 20, kTurns = 6;
+  static constexpr std::size_t kPlannedPauses = 12;
 
   /// The run with the duration that it takes, for `parts` runs of an experiment.
   RunConditions timed(RunConditions run, double parts = 1, double longer = 1) const {
     double needed = cycles_ * longer * period(run);
-    if (takes_revolutions(question_)) {
+    if (turns_) {
       needed = std::max({needed, longer * kPlannedRevolutions * 2 * std::numbers::pi / run.speed, 2 * own_.duration});
     }
-    run.duration = std::min({needed, longest_ / parts, kMostSimulatedCycles / parts * period(run)});
+    run.duration = std::min({needed, means_.longest / parts, kMostSimulatedCycles / parts * period(run)});
     return run;
   }
 
@@ -62,6 +78,55 @@ class ExperimentMaker {
     const double wound = (run.load / own_.load) * (own_.stiffness / run.stiffness);
     const double by_speed = own_.radius * own_.speed / (run.radius * run.speed);
     return stick_ * wound * by_speed + slip_ * std::sqrt(own_.stiffness / run.stiffness);
+  }
+
+  RunConditions at(double radius, double speed) const {
+    RunConditions run = own_;
+    run.radius = radius;
+    run.speed = speed;
+    return run;
+  }
+  void add(const RunConditions& run) { made_.push_back({{timed(run)}}); }
+  void add(const RunConditions& first, const RunConditions& second) {
+    made_.push_back({{timed(first, 2), timed(second, 2)}});
+  }
+
+  /// Experiments with one condition of the record changed to each value.
+  void change(const std::vector<double>& values, double RunConditions::*condition) {
+    for (const double value : values) {
+      if (is_same(value, own_.*condition)) continue;
+      RunConditions run = own_;
+      run.*condition = value;
+      add(run);
+    }
+  }
+
+  /// To each of the speeds, and to the lowest and the highest.
+  void change_speed() {
+    change(means_.speeds, &RunConditions::speed);
+    std::vector<double> other = means_.speeds;
+    std::erase_if(other, [&](double speed) { return is_same(speed, own_.speed); });
+    if (other.size() < 2) return;
+    const auto [slow, fast] = std::minmax_element(other.begin(), other.end());
+    add(at(own_.radius, *slow), at(own_.radius, *fast));
+  }
+
+  /// Other radii: at the speed of the record, and so that the sliding speed stays.
+  void change_radius() {
+    for (const double radius : means_.radii) {
+      if (is_same(radius, own_.radius)) continue;
+      add(at(radius, own_.speed));
+      for (const double speed : means_.speeds) {
+        if (!is_same(speed, own_.speed) && is_same(radius * speed, own_.radius * own_.speed)) add(at(radius, speed));
+      }
+    }
+    if (means_.radii.size() < 2) return;
+    const auto [inner, outer] = std::minmax_element(means_.radii.begin(), means_.radii.end());
+    for (const double fast : means_.speeds) {
+      for (const double slow : means_.speeds) {
+        if (fast > slow && is_same(*inner * fast, *outer * slow)) add(at(*inner, fast), at(*outer, slow));
+      }
+    }
   }
 
   /// Slides with pauses of a dozen lengths between them, from a few sticks to the longest; each after a few cycles.
@@ -74,84 +139,27 @@ class ExperimentMaker {
       // Short and long by turns, so that a drift is no ageing.
       const double u = static_cast<double>((5 * k) % kPlannedPauses) / static_cast<double>(kPlannedPauses - 1);
       const double length = shortest * std::pow(top / shortest, u);
-      if (t + length + between > longest_) continue;
+      if (t + length + between > means_.longest) continue;
       run.pauses.push_back({t, length});
       t += length + between;
     }
-    run.duration = std::min(longest_, t + between);
+    run.duration = std::min(means_.longest, t + between);
     return run;
   }
 
   RunConditions reversed() const {
     RunConditions run = own_;
     run.reversing = 1 / (kCyclesOfTurn * period(run));
-    run.duration = std::min(longest_, kTurns / run.reversing);
+    run.duration = std::min(means_.longest, kTurns / run.reversing);
     return run;
   }
 
- private:
-  static constexpr double kCyclesBetweenPauses = 6, kCyclesOfTurn = 20, kTurns = 6;
-  static constexpr std::size_t kPlannedPauses = 12;
-
-  const OpenQuestion& question_;
   const Means& means_;
-  double longest_, stick_ = 0, slip_ = 0, cycles_ = 0;
   RunConditions own_;
+  bool turns_;
+  double stick_ = 0, slip_ = 0, cycles_ = 0;
+  std::vector<Experiment> made_;
 };
-
-void add_speeds(const ExperimentMaker& maker, const Means& means, std::vector<Experiment>& out) {
-  std::vector<double> other;
-  for (const double speed : means.speeds) {
-    if (is_same(speed, maker.own().speed)) continue;
-    RunConditions run = maker.own();
-    run.speed = speed;
-    out.push_back({{maker.timed(run)}});
-    other.push_back(speed);
-  }
-  if (other.size() < 2) return;
-  RunConditions slow = maker.own(), fast = maker.own();
-  slow.speed = *std::min_element(other.begin(), other.end());
-  fast.speed = *std::max_element(other.begin(), other.end());
-  out.push_back({{maker.timed(slow, 2), maker.timed(fast, 2)}});
-}
-
-/// Other radii: at the speed of the record, and so that the sliding speed stays.
-void add_radii(const ExperimentMaker& maker, const Means& means, std::vector<Experiment>& out) {
-  const RunConditions& own = maker.own();
-  for (const double radius : means.radii) {
-    if (is_same(radius, own.radius)) continue;
-    RunConditions run = own;
-    run.radius = radius;
-    out.push_back({{maker.timed(run)}});
-    for (const double speed : means.speeds) {
-      if (is_same(speed, own.speed) || !is_same(radius * speed, own.radius * own.speed)) continue;
-      run.speed = speed;
-      out.push_back({{maker.timed(run)}});
-    }
-  }
-  if (means.radii.size() < 2) return;
-  const auto [inner, outer] = std::minmax_element(means.radii.begin(), means.radii.end());
-  for (const double fast : means.speeds) {
-    for (const double slow : means.speeds) {
-      if (!(fast > slow) || !is_same(*inner * fast, *outer * slow)) continue;
-      RunConditions near = own, far = own;
-      near.radius = *inner, near.speed = fast;
-      far.radius = *outer, far.speed = slow;
-      out.push_back({{maker.timed(near, 2), maker.timed(far, 2)}});
-    }
-  }
-}
-
-/// Experiments with one condition of the record changed to each value.
-void add_values(const ExperimentMaker& maker, const std::vector<double>& values, double RunConditions::*condition,
-                std::vector<Experiment>& out) {
-  for (const double value : values) {
-    if (is_same(value, maker.own().*condition)) continue;
-    RunConditions run = maker.own();
-    run.*condition = value;
-    out.push_back({{maker.timed(run)}});
-  }
-}
 
 }  // namespace
 
@@ -161,14 +169,14 @@ double Experiment::duration() const {
   return sum;
 }
 
-RunConditions conditions_of_record(const OpenQuestion& question, const Identification& trace) {
-  const Machine& machine = question.machines.front().machine;
+RunConditions OpenQuestion::own_conditions() const {
+  const Machine& machine = machines.front().machine;
   return {.radius = machine.radius,
           .speed = machine.speed,
           .load = machine.load,
           .stiffness = machine.rig.stiffness,
-          .duration = trace.duration,
-          .rate = question.record.rate};
+          .duration = own().duration,
+          .rate = record.rate};
 }
 
 Means usual_means(const Identification& trace, double longest) {
@@ -178,24 +186,11 @@ Means usual_means(const Identification& trace, double longest) {
   return means;
 }
 
-std::vector<Experiment> experiments_for(const OpenQuestion& question, const Identification& trace, const Means& means) {
-  const ExperimentMaker maker(question, trace, means);
-  std::vector<Experiment> out;
-  if (means.tap) out.push_back({.runs = {}, .tap = maker.own().rate});
-  if (means.lift) out.push_back({.runs = {}, .lift = true});
-  add_speeds(maker, means, out);
-  add_radii(maker, means, out);
+std::vector<Experiment> experiments_for(const OpenQuestion& question, const Means& means) {
+  const Motion& motion = question.own().motion;
   // What is recorded as a force, or without a load, is not known to follow the load.
-  const bool load_known =
-      trace.motion.friction_kind == FrictionKind::coefficient && trace.motion.conditions.load.known();
-  if (load_known) add_values(maker, means.loads, &RunConditions::load, out);
-  add_values(maker, means.springs, &RunConditions::stiffness, out);
-  if (means.mass_below > 0) add_values(maker, {means.mass_below}, &RunConditions::mass_below, out);
-  if (means.longest_pause > 0) out.push_back({{maker.with_pauses()}});
-  if (means.reversing) out.push_back({{maker.reversed()}});
-  constexpr double kLonger = 3;
-  out.push_back({{maker.timed(maker.own(), 1, kLonger)}});
-  return out;
+  const bool load_known = motion.friction_kind == FrictionKind::coefficient && motion.conditions.load.known();
+  return ExperimentMaker(question, means).make(load_known);
 }
 
 }  // namespace tribofit

@@ -1,15 +1,26 @@
 #include "tribofit/study/identified.hpp"
-#include "limits.hpp"
+
+#include <Eigen/Core>
+#include <boost/random/normal_distribution.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstddef>
+#include <random>
+#include <stdexcept>
 
 #include "fit/assessment.hpp"
 #include "fit/errors.hpp"
 #include "kinematics/corrections.hpp"
+#include "limits.hpp"
+#include "statistics/linear_algebra.hpp"
+#include "tribofit/fit/identification.hpp"
 #include "tribofit/fit/observations.hpp"
+#include "tribofit/fit/rig.hpp"
 #include "tribofit/friction/evaluate.hpp"
+#include "tribofit/study/block_motion.hpp"
+#include "tribofit/study/critical_speed.hpp"
+#include "tribofit/study/vary.hpp"
 
 namespace tribofit {
 namespace {
@@ -71,6 +82,25 @@ double mass_below_sensor(const Fit& fit) {
   });
 }
 
+/// A square root of a covariance, which need not have full rank.
+Eigen::MatrixXd root_of(const std::vector<double>& covariance, std::size_t count) {
+  const auto n = static_cast<Eigen::Index>(count);
+  if (covariance.empty()) return Eigen::MatrixXd::Zero(n, n);
+  if (covariance.size() != count * count) throw std::invalid_argument("draws_of: wrong size of a covariance");
+  const Eigen::MatrixXd full = Eigen::Map<const Eigen::MatrixXd>(covariance.data(), n, n);
+  // Parameters differ by powers of ten: scaled to a correlation first.
+  const Eigen::VectorXd scale =
+      full.diagonal().cwiseMax(0).cwiseSqrt().unaryExpr([](double s) { return s > 0 ? s : 1; });
+  const Eigen::MatrixXd correlation = scale.cwiseInverse().asDiagonal() * full * scale.cwiseInverse().asDiagonal();
+  const SymmetricEigen eigen = symmetric_eigen(0.5 * (correlation + correlation.transpose()));
+  return scale.asDiagonal() * eigen.vectors * eigen.values.cwiseMax(0).cwiseSqrt().asDiagonal();
+}
+
+bool can_be(const Machine& m) {
+  const auto law = std::span(m.parameters).first(m.model.base_count());
+  return m.rig.mass > 0 && m.rig.stiffness > 0 && m.rig.damping >= 0 && is_possible(m.model.law(), law);
+}
+
 }  // namespace
 
 RigFit rig_beside(const Fit& fit, const Motion& motion, const Segmentation& segmentation,
@@ -114,6 +144,69 @@ IdentifiedMachine identified_machine(const Fit& fit, const RigFit& rig, const Mo
   }
   out.scatter = {fit.floor.scatter, wander_of(fit, motion, segmentation)};
   return out;
+}
+
+std::vector<Machine> draws_of(const Machine& machine, const MachineCovariance& covariance, std::size_t count,
+                              std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  boost::random::normal_distribution<double> normal;
+  const Eigen::MatrixXd friction = root_of(covariance.friction, machine.parameters.size());
+  const Eigen::MatrixXd rig = root_of(covariance.rig, 3);
+  const auto draw = [&](const Eigen::MatrixXd& root) {
+    Eigen::VectorXd z(root.cols());
+    for (double& x : z) x = normal(engine);
+    return Eigen::VectorXd(root * z);
+  };
+  std::vector<Machine> out;
+  for (std::size_t tries = 0; out.size() < count && tries < kMostTries * count; ++tries) {
+    Machine drawn = machine;
+    const Eigen::VectorXd change = draw(friction), of_rig = draw(rig);
+    for (std::size_t k = 0; k < drawn.parameters.size(); ++k) {
+      drawn.parameters[k] += change[static_cast<Eigen::Index>(k)];
+      const Parameter& q = drawn.model.parameters()[k].parameter;
+      if (!drawn.model.parameters()[k].effect.empty()) {
+        drawn.parameters[k] = std::clamp(drawn.parameters[k], q.lower * q.si, q.upper * q.si);
+      }
+    }
+    drawn.rig.mass += of_rig[0];
+    drawn.rig.damping += of_rig[1];
+    drawn.rig.stiffness += of_rig[2];
+    if (can_be(drawn)) out.push_back(std::move(drawn));
+  }
+  return out;
+}
+
+double std_error_of(const StudiedMachine& studied, std::string_view variable) {
+  const auto from = [](const std::vector<double>& covariance, std::size_t k) {
+    const auto n = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(covariance.size()))));
+    const bool known = k < n && covariance[k * n + k] > 0;
+    return known ? std::sqrt(covariance[k * n + k]) : std::nan("");
+  };
+  constexpr std::array<std::string_view, 3> kRig = {"mass", "damping", "stiffness"};
+  for (std::size_t k = 0; k < kRig.size(); ++k) {
+    if (variable == kRig[k]) return from(studied.covariance.rig, k);
+  }
+  const auto& slots = studied.machine.model.parameters();
+  for (std::size_t k = 0; k < slots.size(); ++k) {
+    if (variable == slots[k].full_name()) return from(studied.covariance.friction, k);
+  }
+  return std::nan("");
+}
+
+BlockMotion measured_motion(const StudiedMachine& studied, double disc_velocity) {
+  if (!studied.record || !is_same_speed(disc_velocity, studied.machine.disc_velocity())) return {};
+  return block_motion(studied.record->motion, studied.record->segmentation,
+                      studied.machine.load / studied.machine.rig.stiffness);
+}
+
+const Estimate* measured_value(const StudiedMachine& studied, const MeasureInfo& measure) {
+  if (!studied.record) return nullptr;
+  const Segmentation& s = studied.record->segmentation;
+  const Estimate* value = measure.name == "frequency"    ? &s.frequency
+                          : measure.name == "stick-time" ? &s.stick_time
+                          : measure.name == "peak-speed" ? &s.amplitude
+                                                         : nullptr;
+  return value != nullptr && std::isfinite(value->value) ? value : nullptr;
 }
 
 }  // namespace tribofit

@@ -56,11 +56,9 @@ inline constexpr double kBelowTheLoss = 1e-3;
 /// Periods that show whether a swing grows.
 inline constexpr double kPeriodsOfGrowth = 6;
 
-/// Machines drawn within the uncertainty have critical speeds within this factor.
-inline constexpr double kFarMachine = 3;
-
-/// A speed of stability is drawn up to this multiple of the speed at which stick vanishes. Larger: an empty picture.
-inline constexpr double kFarBeyondStick = 3;
+/// Speeds beyond this factor are far: machines drawn within the uncertainty have critical speeds within it, and a speed
+/// of stability is drawn up to this multiple of that at which stick vanishes. Larger: an empty picture.
+inline constexpr double kFarSpeed = 3;
 
 // ---- uncertainty
 
@@ -95,7 +93,8 @@ inline constexpr std::size_t kFewestLevels = 10;
 
 /// Samples of a slip that are simulated for a plan: the diagnosis takes means over as many, or fewer, and compares
 /// effects that come near each other over as many. Of runs that take more samples than this a part of them.
-inline constexpr double kSamplesOfSlip = 400, kSimulatedSamples = 2e5, kLeastPartOfRate = 0.4;
+inline constexpr std::size_t kSamplesOfSlip = 400;
+inline constexpr double kSimulatedSamples = 2e5, kLeastPartOfRate = 0.4;
 
 /// Relative local error of these simulations: far below what any sensor adds. Smaller ones cost steps: by the order of
 /// the method four times as many at the usual 1e-10.
@@ -107,10 +106,10 @@ inline constexpr double kPlannedTolerance = 1e-7;
 /// of the question.
 inline constexpr double kTemper = 2, kMostBehind = 60;
 
-/// Values by which drawn machines are judged, over all slips and of one: means over fewer move a contact that creeps.
-/// Rounds of the walkers until they have forgotten where they began (a flat valley takes some dozens), and of which
-/// they are kept.
-inline constexpr std::size_t kValuesOfPlausible = 16000, kFewestOfSlip = 60, kMostOfSlip = 400;
+/// Values by which drawn machines are judged, over all slips and, at the least, of one: means over fewer move a contact
+/// that creeps. Rounds of the walkers until they have forgotten where they began (a flat valley takes some dozens), and
+/// of which they are kept.
+inline constexpr std::size_t kValuesOfPlausible = 16000, kFewestOfSlip = 60;
 inline constexpr std::size_t kRoundsToForget = 60, kRoundsOfDraws = 30;
 
 /// Logarithm of the likelihood below its maximum within which a walker begins, and the curvature, over that of the
@@ -145,22 +144,24 @@ inline constexpr double kCostOfMinute = 0.01;
 /// Below this probability so far a model is not simulated as the true one: it would hardly change the mean.
 inline constexpr double kLeastLikely = 0.02;
 
-/// Draws of each model for the expected difference of those that may be the best, how many of these there are at the
-/// most, and draws as many as the theory of its spread counts for. In groups of lag, filter and delay draws spread as
-/// the theory says; the chance of one draw alone is then wrong by 10 to 30 points where it is a few percent.
-inline constexpr std::size_t kDrawsOfModel = 4, kExperimentsDrawnAgain = 4;
-inline constexpr double kDrawsOfTheory = 4;
+/// Draws of each model for the expected difference of those that may be the best (the theory of its spread counts for
+/// as many) and for full diagnoses. In groups of lag, filter and delay draws spread as the theory says; the chance of
+/// one draw alone is then wrong by 10 to 30 points where it is a few percent.
+inline constexpr std::size_t kDrawsOfModel = 4;
+
+/// Experiments that are drawn again, or diagnosed in full until the best of all is one of them, and of which it is said
+/// what is to be seen.
+inline constexpr std::size_t kBestExperiments = 4;
 
 /// By which runs are made longer than those that were simulated first, up to so many cycles of all records (and of the
 /// runs that are simulated first): more take seconds to judge.
 inline constexpr double kLongerRuns[] = {1.5, 2, 3, 4, 6, 8, 12};
 inline constexpr double kMostSimulatedCycles = 400;
 
-/// Experiments that are diagnosed in full, the most of them where the best of all is none of these yet, draws of each
-/// model, and the weight of the expected chance beside them, in diagnoses. Small: the expected chance knows the models
-/// in question alone, a diagnosis the whole catalogue. Of a run at 8 rpm that should distinguish a lag from a filter
-/// with 1.0, none of four diagnoses named the lag alone.
-inline constexpr std::size_t kExperimentsInFull = 2, kMostExperimentsInFull = 4, kMostDrawsInFull = 4;
+/// Experiments that are diagnosed in full in any case, and the weight of the expected chance beside them, in diagnoses.
+/// Small: the expected chance knows the models in question alone, a diagnosis the whole catalogue. Of a run at 8 rpm
+/// that should distinguish a lag from a filter with 1.0, none of four diagnoses named the lag alone.
+inline constexpr std::size_t kExperimentsInFull = 2;
 inline constexpr double kWeightOfExpected = 1;
 
 /// How often a run names the true effect alone that was expected not to, and does not that was expected to, whatever
@@ -186,7 +187,7 @@ inline constexpr double kReadingOfEdge = 0.02e-3, kPartOfSample = 0.3, kReadingO
 /// parts of the noise of a sample, as of the mean of a hundred.
 inline constexpr double kReadingOfZero = 2e-3, kNoiseOfZero = 0.1;
 
-/// Draws of each model for the ranges of what is seen, and experiments of which that is said.
-inline constexpr std::size_t kDrawsToSee = 6, kExperimentsToSee = 4;
+/// Draws of each model for the ranges of what is seen.
+inline constexpr std::size_t kDrawsToSee = 6;
 
 }  // namespace tribofit

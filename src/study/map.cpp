@@ -1,7 +1,10 @@
 #include "tribofit/study/map.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
+#include <charconv>
 #include <cmath>
 #include <mutex>
 #include <string>
@@ -34,21 +37,60 @@ void check_axis(const MapRequest& request, const MapAxis& axis) {
   }
 }
 
-/// Blocks of an axis: the k-th begins at this value, the last ends at the end.
-std::vector<std::size_t> blocks_of(std::size_t count, std::size_t most) {
-  const std::size_t blocks = std::min(count, most);
-  std::vector<std::size_t> begins;
-  for (std::size_t k = 0; k <= blocks; ++k) begins.push_back(k * count / blocks);
-  return begins;
+std::string number(double value) {
+  return std::isfinite(value) ? fmt::format("{}", value) : "";
 }
 
-std::vector<double> middles(const std::vector<double>& values, const std::vector<std::size_t>& begins) {
-  std::vector<double> out;
-  for (std::size_t k = 0; k + 1 < begins.size(); ++k) {
-    out.push_back(0.5 * (values[begins[k]] + values[begins[k + 1] - 1]));
+/// The abscissa and the ordinate of a cell: how its line begins.
+std::string place_of(const MapRequest& request, std::size_t column, std::size_t row) {
+  return number(request.x.values[column] / request.x.variable.si) + "," +
+         number(request.y.values[row] / request.y.variable.si) + ",";
+}
+
+/// "stiffness_N_per_mm", as columns are called.
+std::string column_of(const Variable& variable) {
+  const std::string text = variable.name + (variable.unit == "1" ? "" : "_" + variable.unit);
+  std::string out;
+  for (const char c : text) {
+    if (c == '/') {
+      out += variable.unit.find('/') == 0 ? "1_per_" : "_per_";
+    } else {
+      out += c == ' ' || c == '-' ? '_' : c;
+    }
   }
   return out;
 }
+
+/// A cell of a map from the rest of its line; nothing where that is not one.
+std::optional<MapCell> map_cell_from(const std::string& line) {
+  std::size_t comma = line.find(',');
+  const auto regime =
+      std::find_if(kRegimes.begin(), kRegimes.end(), [&](Regime r) { return line.substr(0, comma) == to_string(r); });
+  if (regime == kRegimes.end()) return std::nullopt;
+  MapCell cell{*regime, {}};
+  for (const MeasureInfo& measure : measures()) {
+    const std::size_t begin = comma + 1;
+    comma = line.find(',', begin);
+    if (comma == std::string::npos) return std::nullopt;
+    double value = std::nan("");
+    if (comma > begin && std::from_chars(line.data() + begin, line.data() + comma, value).ptr != line.data() + comma) {
+      return std::nullopt;
+    }
+    cell.values.push_back(value * measure.si);
+  }
+  return cell;
+}
+
+/// At most so many blocks of an axis: the k-th goes from begins[k] to begins[k + 1].
+struct AxisBlocks {
+  AxisBlocks(const std::vector<double>& values, std::size_t most) {
+    const std::size_t count = std::min(values.size(), most);
+    for (std::size_t k = 0; k <= count; ++k) begins.push_back(k * values.size() / count);
+    for (std::size_t k = 0; k < count; ++k) middles.push_back(0.5 * (values[begins[k]] + values[begins[k + 1] - 1]));
+  }
+  std::vector<std::size_t> begins;
+  std::vector<double> middles;
+};
 
 double value_in(const MapCell& cell, std::size_t measure) {
   return measure < cell.values.size() ? cell.values[measure] : std::nan("");
@@ -108,15 +150,14 @@ std::vector<std::pair<double, double>> edge_of_stick_slip(const MapRequest& requ
 }
 
 CoarseMap coarse_map(const MapRequest& request, const MapRows& rows, std::size_t measure, std::size_t most) {
-  const std::vector<std::size_t> across = blocks_of(request.x.values.size(), most),
-                                 down = blocks_of(request.y.values.size(), most);
-  CoarseMap map{middles(request.x.values, across), middles(request.y.values, down), {}};
+  const AxisBlocks across(request.x.values, most), down(request.y.values, most);
+  CoarseMap map{across.middles, down.middles, {}};
   map.z.assign(map.y.size(), std::vector<double>(map.x.size(), std::nan("")));
   for (std::size_t b = 0; b < map.y.size(); ++b) {
-    for (std::size_t j = down[b]; j < std::min(down[b + 1], rows.size()); ++j) {
+    for (std::size_t j = down.begins[b]; j < std::min(down.begins[b + 1], rows.size()); ++j) {
       for (std::size_t a = 0; a < map.x.size(); ++a) {
         double& largest = map.z[b][a];
-        for (std::size_t i = across[a]; i < std::min(across[a + 1], rows[j].size()); ++i) {
+        for (std::size_t i = across.begins[a]; i < std::min(across.begins[a + 1], rows[j].size()); ++i) {
           const double value = value_in(rows[j][i], measure);
           if (std::isfinite(value) && !(value <= largest)) largest = value;
         }
@@ -146,6 +187,39 @@ std::size_t count_of(const MapRows& rows, Regime regime) {
         std::count_if(row.begin(), row.end(), [&](const MapCell& c) { return c.regime == regime; }));
   }
   return count;
+}
+
+std::string map_csv_header(const MapRequest& request) {
+  std::string text = column_of(request.x.variable) + "," + column_of(request.y.variable) + ",regime";
+  for (const MeasureInfo& measure : measures()) text += "," + measure.column;
+  return text + "\n";
+}
+
+std::string map_csv_row(const MapRequest& request, std::size_t row, const std::vector<MapCell>& cells) {
+  std::string text;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    text += place_of(request, i, row) + std::string(to_string(cells[i].regime));
+    for (std::size_t k = 0; k < cells[i].values.size(); ++k) {
+      text += "," + number(cells[i].values[k] / measures()[k].si);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::vector<MapCell> map_row_from_csv(const MapRequest& request, std::size_t row, const std::string& text) {
+  std::vector<MapCell> all;
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < request.x.values.size(); ++i) {
+    const std::string front = place_of(request, i, row);
+    const std::size_t end = text.find('\n', at);
+    if (text.compare(at, front.size(), front) != 0 || end == std::string::npos) return {};
+    const auto known = map_cell_from(text.substr(at + front.size(), end - at - front.size()) + ",");
+    if (!known) return {};
+    all.push_back(*known);
+    at = end + 1;
+  }
+  return at == text.size() ? all : std::vector<MapCell>{};
 }
 
 }  // namespace tribofit

@@ -21,6 +21,8 @@ struct MotionMeasures {
   /// Mean slip in the plane of displacement since break-away and v_b, at equal parts of the slip: x [m], then v_b
   /// [m/s].
   std::vector<Estimate> portrait;
+
+  const Estimate& break_away() const { return values[3]; }
 };
 
 /// Period, stick time, peak v_r, break-away friction, least friction in slip (of means over a twentieth of it), RMS of

@@ -1,5 +1,3 @@
-#include "plausible_draws.hpp"
-
 #include <Eigen/Dense>
 #include <boost/random/normal_distribution.hpp>
 
@@ -12,10 +10,11 @@
 #include "fit/model_residuals.hpp"
 #include "fit/starts.hpp"
 #include "limits.hpp"
+#include "open_question.hpp"
 #include "statistics/ensemble_sampler.hpp"
 #include "statistics/linear_algebra.hpp"
 #include "tribofit/fit/observations.hpp"
-#include "tribofit/study/uncertainty.hpp"
+#include "tribofit/study/identified.hpp"
 
 namespace tribofit {
 
@@ -54,20 +53,13 @@ class Coordinates {
 
   /// Curvature by these coordinates, of that by the parameters.
   Eigen::MatrixXd curvature(const Eigen::MatrixXd& by_parameters) const {
-    const auto n = static_cast<Eigen::Index>(free_.size());
-    Eigen::MatrixXd out(n, n);
-    const auto step = [&](Eigen::Index k) {
-      const Free& f = free_[static_cast<std::size_t>(k)];
-      return f.is_scale ? least_[f.index] : 1.0;
-    };
-    for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index j = 0; j < n; ++j) {
-        out(i, j) = step(i) * step(j) *
-                    by_parameters(static_cast<Eigen::Index>(free_[static_cast<std::size_t>(i)].index),
-                                  static_cast<Eigen::Index>(free_[static_cast<std::size_t>(j)].index));
-      }
+    std::vector<Eigen::Index> indices;
+    Eigen::VectorXd step(static_cast<Eigen::Index>(free_.size()));
+    for (const Free& f : free_) {
+      step[static_cast<Eigen::Index>(indices.size())] = f.is_scale ? least_[f.index] : 1.0;
+      indices.push_back(static_cast<Eigen::Index>(f.index));
     }
-    return out;
+    return (step * step.transpose()).cwiseProduct(by_parameters(indices, indices));
   }
 
  private:
@@ -83,7 +75,6 @@ class Coordinates {
 /// Walkers about the minimum, as its curvature allows; those that would leave the bounds, or climb far, nearer to it.
 std::vector<std::vector<double>> walkers_about(const std::vector<double>& least, const Eigen::MatrixXd& information,
                                                const LogDensity& density) {
-  const auto n = static_cast<Eigen::Index>(least.size());
   const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const SymmetricEigen eigen = symmetric_eigen(scale.asDiagonal() * information * scale.asDiagonal());
   const Eigen::VectorXd spread = eigen.values.cwiseMax(kFlattestStart).cwiseSqrt().cwiseInverse();
@@ -92,7 +83,7 @@ std::vector<std::vector<double>> walkers_about(const std::vector<double>& least,
   const double top = density(least);
   std::vector<std::vector<double>> walkers;
   for (std::size_t w = 0; w < 2 * (least.size() + 1); ++w) {
-    Eigen::VectorXd step(n);
+    Eigen::VectorXd step(scale.size());
     for (double& x : step) x = normal(engine);
     step = scale.asDiagonal() * (eigen.vectors * spread.asDiagonal() * step);
     std::vector<double> walker(least.size());
@@ -112,7 +103,7 @@ PlausibleDraws::PlausibleDraws(const IdentifiedMachine& known, const Record& rec
   const std::vector<double>& least = machine.parameters;
   const std::size_t slips = std::max<std::size_t>(1, record.segmentation->cycles.size());
   Observations observations = observe(*record.motion, *record.segmentation, machine.model.needs(),
-                                      std::clamp(kValuesOfPlausible / slips, kFewestOfSlip, kMostOfSlip));
+                                      std::clamp(kValuesOfPlausible / slips, kFewestOfSlip, kSamplesOfSlip));
   refer_to_conditions_of(fit, observations);
   const Coordinates coordinates(machine.model, observations, least);
   ModelResiduals residuals(machine.model, observations, all_slips(observations));

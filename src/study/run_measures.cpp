@@ -1,5 +1,3 @@
-#include "run_measures.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +6,7 @@
 #include <span>
 
 #include "oscillator/find_zero.hpp"
+#include "simulated_run.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/statistics/polynomials.hpp"
@@ -60,21 +59,14 @@ MeanSlip mean_slip(const SimulatedRun& run) {
 
 /// Where the mean slip passes a speed on its way up and down, as phases between 0 and kPhases.
 std::optional<std::pair<double, double>> passes(const MeanSlip& slip, double speed) {
-  const auto top =
-      static_cast<std::size_t>(std::max_element(slip.speed.begin(), slip.speed.end()) - slip.speed.begin());
-  std::optional<double> up, down;
-  for (std::size_t k = 1; k <= top && !up; ++k) {
-    if (slip.speed[k] >= speed && slip.speed[k - 1] < speed) {
-      up = static_cast<double>(k - 1) + (speed - slip.speed[k - 1]) / (slip.speed[k] - slip.speed[k - 1]);
-    }
-  }
-  for (std::size_t k = top + 1; k < slip.speed.size() && !down; ++k) {
-    if (slip.speed[k] <= speed && slip.speed[k - 1] > speed) {
-      down = static_cast<double>(k - 1) + (slip.speed[k - 1] - speed) / (slip.speed[k - 1] - slip.speed[k]);
-    }
-  }
-  if (!up || !down) return std::nullopt;
-  return std::pair{*up, *down};
+  const std::vector<double>& v = slip.speed;
+  const auto top = static_cast<std::size_t>(std::max_element(v.begin(), v.end()) - v.begin());
+  std::size_t up = 1, down = top + 1;
+  while (up <= top && !(v[up] >= speed && v[up - 1] < speed)) ++up;
+  while (down < v.size() && !(v[down] <= speed && v[down - 1] > speed)) ++down;
+  if (up > top || down >= v.size()) return std::nullopt;
+  const auto phase = [&](std::size_t k) { return static_cast<double>(k - 1) + (speed - v[k - 1]) / (v[k] - v[k - 1]); };
+  return std::pair{phase(up), phase(down)};
 }
 
 double at_phase(const std::vector<double>& x, double phase) {
@@ -173,11 +165,10 @@ double creep_of(const SimulatedRun& run) {
   for (const Cycle& cycle : run.segmentation.cycles) {
     const std::size_t quarter = cycle.stick.size() / 4;
     if (quarter < 4 || !cycle.stick_complete) continue;
+    const auto part = static_cast<double>(quarter);
     for (std::size_t i = 0; i < quarter; ++i) {
-      early += cycle.direction * run.motion.relative_velocity[cycle.stick.begin + quarter + i] /
-               static_cast<double>(quarter);
-      late +=
-          cycle.direction * run.motion.relative_velocity[cycle.stick.end - quarter + i] / static_cast<double>(quarter);
+      early += cycle.direction * run.motion.relative_velocity[cycle.stick.begin + quarter + i] / part;
+      late += cycle.direction * run.motion.relative_velocity[cycle.stick.end - quarter + i] / part;
     }
     count += 1;
   }

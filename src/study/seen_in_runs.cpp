@@ -1,17 +1,13 @@
-#include "seen_in_runs.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "hand_measurements.hpp"
 #include "limits.hpp"
-#include "run_measures.hpp"
+#include "open_question.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/execution/parallel.hpp"
 #include "tribofit/statistics/distributions.hpp"
-#include "weighing.hpp"
 
 namespace tribofit {
 
@@ -20,12 +16,11 @@ namespace {
 /// The runs of every draw of every model: [model][draw]; empty where they could not be simulated.
 using SimulatedDraws = std::vector<std::vector<std::vector<SimulatedRun>>>;
 
-SimulatedDraws draws_to_see(const OpenQuestion& question, const Experiment& experiment, const PlanOptions& options) {
-  SimulatedDraws out(question.models.size());
-  for (auto& draws : out) draws.resize(kDrawsToSee);
-  run_tasks(question.models.size() * kDrawsToSee, options.threads, [&](std::size_t t) {
+SimulatedDraws draws_to_see(const OpenQuestion& question, const Experiment& experiment) {
+  SimulatedDraws out(question.models.size(), std::vector<std::vector<SimulatedRun>>(kDrawsToSee));
+  run_tasks(question.models.size() * kDrawsToSee, question.options.threads, [&](std::size_t t) {
     const std::size_t model = t / kDrawsToSee, draw = t % kDrawsToSee;
-    out[model][draw] = runs_of(question, experiment, model, 1000 + draw, options);
+    out[model][draw] = runs_of(question, experiment, model, 1000 + draw);
   });
   return out;
 }
@@ -64,6 +59,12 @@ RunView view_of(const OpenQuestion& question) {
     if (view == SketchView::time || view == SketchView::distance || view == SketchView::angle) return RunView::time;
   }
   return RunView::loop;
+}
+
+PredictedCurves named_as(RunView view) {
+  if (view == RunView::loop) return {"sliding speed v_{r}", "mm/s", 1e-3, "friction of the mean slip", {}};
+  if (view == RunView::time) return {"time", "s", 1, "mean friction of a slip", {}};
+  return {"stick time", "s", 1, "friction at break-away", {}};
 }
 
 /// y at `x` of points in order of x, by straight lines; NaN outside.
@@ -128,27 +129,23 @@ PredictedCurves::OfModel band_of(const std::vector<RunCurve>& draws, RunView vie
   return out;
 }
 
-std::vector<Prediction> predict_measures(const SimulatedDraws& draws, std::size_t last) {
+std::vector<Prediction> predict_measures(const SimulatedDraws& draws) {
   std::vector<Prediction> out;
-  const std::vector<MotionMeasureInfo>& measures = run_measures();
-  std::vector<std::vector<std::vector<double>>> values(draws.size());  // [model][draw][measure]
-  for (std::size_t m = 0; m < draws.size(); ++m) {
-    for (const auto& runs : draws[m]) {
-      values[m].push_back(runs.empty() ? std::vector<double>(measures.size(), std::nan("")) : measure_run(runs[last]));
+  for (const MotionMeasureInfo& info : run_measures()) out.push_back({info.name, info.unit, info.si});
+  std::vector<std::vector<MeanAndSpread>> spreads(out.size());
+  for (const auto& model : draws) {
+    std::vector<std::vector<double>> values(out.size());
+    for (const auto& runs : model) {
+      const auto seen = runs.empty() ? std::vector<double>(out.size(), std::nan("")) : measure_run(runs.back());
+      for (std::size_t k = 0; k < out.size(); ++k) values[k].push_back(seen[k]);
+    }
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      spreads[k].push_back(spread_of(values[k]));
+      out[k].models.push_back(spreads[k].back().range95());
     }
   }
-  for (std::size_t k = 0; k < measures.size(); ++k) {
-    std::vector<MeanAndSpread> spreads;
-    Prediction one{measures[k].name, measures[k].unit, measures[k].si, 0, {}};
-    for (const auto& model : values) {
-      std::vector<double> own;
-      for (const auto& draw : model) own.push_back(draw[k]);
-      spreads.push_back(spread_of(own));
-      one.models.push_back(spreads.back().range95());
-    }
-    one.apart = apart(spreads);
-    if (one.apart > 0) out.push_back(std::move(one));
-  }
+  for (std::size_t k = 0; k < out.size(); ++k) out[k].apart = apart(spreads[k]);
+  std::erase_if(out, [](const Prediction& one) { return !(one.apart > 0); });
   std::stable_sort(out.begin(), out.end(), [](const Prediction& a, const Prediction& b) { return a.apart > b.apart; });
   return out;
 }
@@ -175,23 +172,15 @@ std::vector<PredictedCurves> predict_curves(const OpenQuestion& question, const 
   std::vector<RunView> views = {RunView::loop};
   if (view_of(question) != RunView::loop) views.insert(views.begin(), view_of(question));
   for (const RunView view : views) {
-    PredictedCurves curves;
-    curves.name = view == RunView::loop ? "sliding speed v_{r}" : view == RunView::time ? "time" : "stick time";
-    curves.unit = view == RunView::loop ? "mm/s" : "s";
-    curves.si = view == RunView::loop ? 1e-3 : 1;
-    curves.quantity = view == RunView::loop   ? "friction of the mean slip"
-                      : view == RunView::time ? "mean friction of a slip"
-                                              : "friction at break-away";
+    PredictedCurves& curves = out.emplace_back(named_as(view));
     for (const auto& model : draws) {
       std::vector<RunCurve> own;
       for (const auto& runs : model) {
-        if (runs.empty()) continue;
-        RunCurve curve = curve_of_run(runs.back(), view);
-        if (!curve.x.empty()) own.push_back(std::move(curve));
+        if (!runs.empty()) own.push_back(curve_of_run(runs.back(), view));
       }
+      std::erase_if(own, [](const RunCurve& curve) { return curve.x.empty(); });
       curves.models.push_back(band_of(own, view));
     }
-    out.push_back(std::move(curves));
   }
   if (out.back().models.front().y.size() > 1) {
     const std::string& first = question.models.front().name;
@@ -202,13 +191,14 @@ std::vector<PredictedCurves> predict_curves(const OpenQuestion& question, const 
 
 }  // namespace
 
-Seen predict_seen(const OpenQuestion& question, const Experiment& experiment, bool with_curves,
-                  const PlanOptions& options) {
-  if (experiment.is_by_hand()) return {predict_by_hand(question, experiment), {}};
-  const SimulatedDraws draws = draws_to_see(question, experiment, options);
-  Seen out{predict_measures(draws, experiment.runs.size() - 1), {}};
-  if (with_curves) out.curves = predict_curves(question, draws);
-  return out;
+void predict_seen(const OpenQuestion& question, PlannedExperiment& one, std::vector<PredictedCurves>* curves) {
+  if (one.experiment.is_by_hand()) {
+    one.predictions = predict_by_hand(question, one.experiment);
+    return;
+  }
+  const SimulatedDraws draws = draws_to_see(question, one.experiment);
+  one.predictions = predict_measures(draws);
+  if (curves != nullptr) *curves = predict_curves(question, draws);
 }
 
 }  // namespace tribofit

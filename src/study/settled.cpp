@@ -1,5 +1,4 @@
 #include "tribofit/study/settled.hpp"
-#include "limits.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +6,10 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <span>
 
+#include "limits.hpp"
+#include "statistics/reductions.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/oscillator/steady_sliding.hpp"
 #include "tribofit/output/digits.hpp"
@@ -42,16 +44,13 @@ std::vector<SeenCycle> cycles_of(const SimulatedMotion& motion) {
   for (std::size_t k = 0; k + 1 < begins.size(); ++k) {
     const double begin = begins[k]->break_away_time, end = begins[k + 1]->break_away_time;
     while (turn != motion.turning_points.end() && turn->time < begin) ++turn;
-    double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
-    for (; turn != motion.turning_points.end() && turn->time < end; ++turn) {
-      lowest = std::min(lowest, turn->displacement);
-      highest = std::max(highest, turn->displacement);
-    }
+    Extremes swing{INFINITY, -INFINITY};
+    for (; turn != motion.turning_points.end() && turn->time < end; ++turn) swing.take(turn->displacement);
     double fastest = 0;  // a stick may end in more than one slip
     for (const SimulatedSlip* slip = begins[k]; slip != begins[k + 1]; ++slip) {
       fastest = std::max(fastest, slip->peak_speed);
     }
-    cycles.push_back({begin, end - begin, begins[k + 1]->stick_time, std::max(0.0, highest - lowest), fastest});
+    cycles.push_back({begin, end - begin, begins[k + 1]->stick_time, std::max(0.0, swing.high - swing.low), fastest});
   }
   return cycles;
 }
@@ -75,12 +74,6 @@ std::vector<double> swings_since(const SimulatedMotion& motion, double begin, do
   return sizes;
 }
 
-/// Swings below this are rounding of the displacement [m].
-double rest_of(const Machine& machine) {
-  const double displacement = std::abs(steady_sliding(machine).displacement);
-  return kRoundings * std::numeric_limits<double>::epsilon() * displacement;
-}
-
 /// Whether a motion that slid for `length` [s] without swinging has come to steady sliding: that is stable, and the
 /// time was several times that in which deviations from it fall by e.
 bool creeps_to_rest(const Machine& machine, double length) {
@@ -94,58 +87,53 @@ bool alike(double a, double b, double tolerance) {
 class Settling {
  public:
   Settling(const Machine& machine, const SettleOptions& options)
-      : machine_(machine), options_(options), period_(natural_period(machine)), cycle_(longest_cycle(machine)) {}
+      : machine_(machine), options_(options), period_(natural_period(machine)) {}
 
-  Settled run();
+  Settled run() {
+    const bool winds_up = options_.start != StartFrom::sliding;
+    const double cycle = longest_cycle(machine_), most_cycles = options_.longest_cycles * cycle;
+    for (double duration = winds_up ? 4 * cycle + 4 * period_ : 20 * period_;; duration *= 4) {
+      SimulatedMotion motion;
+      try {
+        motion = motion_of(machine_, {.duration = duration, .rate = 0, .start = start_of(machine_, options_.start)},
+                           options_.sharpness);
+      } catch (const InputError& error) {
+        out_.seen = error.problem();
+        return out_;
+      }
+      out_ = {};
+      out_.simulated = duration;
+      const std::optional<double> since = open_slip(motion);
+      out_.sticks = !since || duration - *since <= kLongestSlip * period_;
+      if (out_.sticks ? judge_cycles(cycles_of(motion)) : judge_swings(motion, *since)) return out_;
+      if (duration >= (out_.sticks ? most_cycles : options_.longest_swings * period_)) return out_;
+    }
+  }
 
  private:
-  bool judge(const SimulatedMotion& motion, double duration);
+  void measure(const SeenCycle& cycle) {
+    out_.frequency = 1 / cycle.period;
+    out_.stick_time = cycle.stick_time;
+    out_.peak_to_peak = cycle.peak_to_peak;
+    out_.energy = 0.5 * machine_.rig.stiffness * cycle.peak_to_peak * cycle.peak_to_peak;
+    out_.peak_speed = cycle.peak_speed;
+    out_.begin = cycle.begin;
+  }
+  bool slides() {
+    out_.regime = Regime::sliding;
+    out_.peak_to_peak = out_.energy = 0;
+    out_.peak_speed = machine_.disc_velocity();
+    return true;
+  }
   bool judge_cycles(const std::vector<SeenCycle>& cycles);
   bool judge_swings(const SimulatedMotion& motion, double since);
-  bool slides();
-  void measure(const SeenCycle& cycle);
   double fastest_of_vibration(const TurningPoint& from) const;
 
   const Machine& machine_;
   const SettleOptions& options_;
-  double period_, cycle_;
+  double period_;
   Settled out_;
 };
-
-Settled Settling::run() {
-  const bool winds_up = options_.start != StartFrom::sliding;
-  const double most_cycles = options_.longest_cycles * cycle_, most_swings = options_.longest_swings * period_;
-  for (double duration = winds_up ? 4 * cycle_ + 4 * period_ : 20 * period_;; duration *= 4) {
-    SimulatedMotion motion;
-    try {
-      motion = motion_of(machine_, {.duration = duration, .rate = 0, .start = start_of(machine_, options_.start)},
-                         options_.sharpness);
-    } catch (const InputError& error) {
-      out_.seen = error.problem();
-      return out_;
-    }
-    out_ = {};
-    out_.simulated = duration;
-    if (judge(motion, duration)) return out_;
-    if (duration >= (out_.sticks ? most_cycles : most_swings)) return out_;
-  }
-}
-
-bool Settling::judge(const SimulatedMotion& motion, double duration) {
-  const std::optional<double> since = open_slip(motion);
-  if (since && duration - *since > kLongestSlip * period_) return judge_swings(motion, *since);
-  out_.sticks = true;
-  return judge_cycles(cycles_of(motion));
-}
-
-void Settling::measure(const SeenCycle& cycle) {
-  out_.frequency = 1 / cycle.period;
-  out_.stick_time = cycle.stick_time;
-  out_.peak_to_peak = cycle.peak_to_peak;
-  out_.energy = 0.5 * machine_.rig.stiffness * cycle.peak_to_peak * cycle.peak_to_peak;
-  out_.peak_speed = cycle.peak_speed;
-  out_.begin = cycle.begin;
-}
 
 bool Settling::judge_cycles(const std::vector<SeenCycle>& cycles) {
   if (cycles.size() < 3) {
@@ -162,50 +150,42 @@ bool Settling::judge_cycles(const std::vector<SeenCycle>& cycles) {
     out_.regime = Regime::stick_slip;
     return true;
   }
-  const std::vector<SeenCycle> late(cycles.begin() + static_cast<std::ptrdiff_t>(cycles.size() / 2), cycles.end());
-  SeenCycle mean{.begin = last.begin}, least = last, most = last;
+  const std::span<const SeenCycle> late = std::span(cycles).subspan(cycles.size() / 2);
+  SeenCycle mean{.begin = last.begin};
+  Extremes period{last.period, last.period}, size{last.peak_to_peak, last.peak_to_peak};
   for (const SeenCycle& c : late) {
     const double share = 1 / static_cast<double>(late.size());
     mean.period += share * c.period;
     mean.stick_time += share * c.stick_time;
     mean.peak_to_peak += share * c.peak_to_peak;
     mean.peak_speed += share * c.peak_speed;
-    least.period = std::min(least.period, c.period);
-    most.period = std::max(most.period, c.period);
-    least.peak_to_peak = std::min(least.peak_to_peak, c.peak_to_peak);
-    most.peak_to_peak = std::max(most.peak_to_peak, c.peak_to_peak);
+    period.take(c.period);
+    size.take(c.peak_to_peak);
   }
   measure(mean);
   out_.seen = fmt::format(
       "stick-slip that does not repeat itself: over the last {} cycles of {} s the period goes from {} to {} s, "
       "peak-to-peak from {} to {} mm",
-      late.size(), general(out_.simulated, 3), general(least.period), general(most.period),
-      general(1e3 * least.peak_to_peak), general(1e3 * most.peak_to_peak));
+      late.size(), general(out_.simulated, 3), general(period.low), general(period.high), general(1e3 * size.low),
+      general(1e3 * size.high));
   return false;
 }
 
 /// Largest |v_r| of a vibration that begins at a turning point.
 double Settling::fastest_of_vibration(const TurningPoint& from) const {
-  SimulationOptions options{.duration = 2 * period_, .rate = 0};
-  options.start = BlockStart{from.displacement, 0};
-  const SimulatedMotion motion = motion_of(machine_, options, options_.sharpness);
+  const SimulatedMotion motion = motion_of(
+      machine_, {.duration = 2 * period_, .rate = 0, .start = BlockStart{from.displacement, 0}}, options_.sharpness);
   return motion.slips.empty() ? machine_.disc_velocity() : motion.slips.back().peak_speed;
-}
-
-bool Settling::slides() {
-  out_.regime = Regime::sliding;
-  out_.frequency = out_.stick_time = std::numeric_limits<double>::quiet_NaN();
-  out_.peak_to_peak = out_.energy = 0;
-  out_.peak_speed = machine_.disc_velocity();
-  return true;
 }
 
 bool Settling::judge_swings(const SimulatedMotion& motion, double since) {
   const std::vector<double> swings = swings_since(motion, since);
-  const double still = rest_of(machine_), length = out_.simulated - since;
+  // Swings below this are rounding of the displacement [m].
+  const double still =
+      kRoundings * std::numeric_limits<double>::epsilon() * std::abs(steady_sliding(machine_).displacement);
   if (swings.size() < 5 || *std::max_element(swings.begin(), swings.end()) < still) {
     // What does not swing creeps to its place, unless it runs away from it.
-    if (creeps_to_rest(machine_, length)) return slides();
+    if (creeps_to_rest(machine_, out_.simulated - since)) return slides();
     out_.seen = fmt::format("sliding without a stick, {} swings in {} s", swings.size(), general(out_.simulated, 3));
     return false;
   }
@@ -213,16 +193,15 @@ bool Settling::judge_swings(const SimulatedMotion& motion, double since) {
   const double first = *std::max_element(swings.begin(), swings.end());
   const double last = swings.back(), change = last / swings[swings.size() - 3] - 1;
   const bool dies_out = (change < 0 && last < kSmallSwing * first) || last < std::max(kGoneSwing * first, still);
+  const TurningPoint& end = turns.back();
   if (dies_out && steady_sliding(machine_).is_stable()) {
-    out_.begin = turns.back().time;
+    out_.begin = end.time;
     return slides();
   }
-  out_.stick_time = 0;
-  const TurningPoint& end = turns.back();
-  out_.frequency = 1 / (end.time - turns[turns.size() - 3].time);
-  out_.peak_to_peak = last;
-  out_.energy = 0.5 * machine_.rig.stiffness * last * last;
-  out_.begin = end.is_maximum ? end.time : turns[turns.size() - 2].time;
+  measure({.begin = end.is_maximum ? end.time : turns[turns.size() - 2].time,
+           .period = end.time - turns[turns.size() - 3].time,
+           .peak_to_peak = last,
+           .peak_speed = std::numeric_limits<double>::quiet_NaN()});
   if (std::abs(change) < kSteadySwing * options_.tolerance) {
     out_.regime = Regime::vibration;
     out_.peak_speed = fastest_of_vibration(end);
@@ -233,54 +212,6 @@ bool Settling::judge_swings(const SimulatedMotion& motion, double since) {
                           general(out_.simulated, 3));
   return false;
 }
-
-}  // namespace
-
-std::string_view to_string(Regime regime) {
-  switch (regime) {
-    case Regime::stick_slip:
-      return "stick-slip";
-    case Regime::vibration:
-      return "vibration";
-    case Regime::sliding:
-      return "sliding";
-    case Regime::not_settled:
-      break;
-  }
-  return "not-settled";
-}
-
-SimulatedMotion motion_of(const Machine& machine, const SimulationOptions& options, double sharpness) {
-  if (sharpness == 0) return simulate(machine.rig, machine.drive(), machine.model, machine.parameters, options);
-  const SmoothedLaw law = smoothed_law(machine.model, machine.parameters, sharpness);
-  return simulate_smoothed(machine.rig, machine.drive(), law,
-                           {.duration = options.duration,
-                            .rate = options.rate,
-                            .settle = options.settle,
-                            .start = options.start.value_or(BlockStart{0, machine.disc_velocity()})});
-}
-
-std::optional<BlockStart> start_of(const Machine& machine, StartFrom start) {
-  constexpr double kPush = 1e-3;
-  switch (start) {
-    case StartFrom::stick:
-      break;
-    case StartFrom::sliding:
-      return BlockStart{steady_sliding(machine).displacement, kPush * machine.disc_velocity()};
-    case StartFrom::rest:
-      return BlockStart{};
-  }
-  return std::nullopt;
-}
-
-Settled settle(const Machine& machine, const SettleOptions& options) {
-  // Refuses machines that cannot be; what cannot be integrated afterwards does not settle.
-  steady_sliding(machine);
-  if (options.sharpness > 0) smoothed_law(machine.model, machine.parameters, options.sharpness);
-  return Settling(machine, options).run();
-}
-
-namespace {
 
 /// Whether these cycles of a motion that still sticks go on for ever: a bare law begins each at the same break-away,
 /// others must not shrink one after the other, as those do in which a fast disc has set the block swinging and it comes
@@ -296,6 +227,35 @@ bool goes_on(const std::vector<SeenCycle>& cycles, bool bare) {
 }
 
 }  // namespace
+
+std::string_view to_string(Regime regime) {
+  constexpr std::string_view kNames[] = {"stick-slip", "vibration", "sliding", "not-settled"};
+  return kNames[static_cast<std::size_t>(regime)];
+}
+
+SimulatedMotion motion_of(const Machine& machine, const SimulationOptions& options, double sharpness) {
+  if (sharpness == 0) return simulate(machine.rig, machine.drive(), machine.model, machine.parameters, options);
+  const SmoothedLaw law = smoothed_law(machine.model, machine.parameters, sharpness);
+  return simulate_smoothed(machine.rig, machine.drive(), law,
+                           {.duration = options.duration,
+                            .rate = options.rate,
+                            .settle = options.settle,
+                            .start = options.start.value_or(BlockStart{0, machine.disc_velocity()})});
+}
+
+std::optional<BlockStart> start_of(const Machine& machine, StartFrom start) {
+  if (start == StartFrom::stick) return std::nullopt;
+  if (start == StartFrom::rest) return BlockStart{};
+  constexpr double kPush = 1e-3;
+  return BlockStart{steady_sliding(machine).displacement, kPush * machine.disc_velocity()};
+}
+
+Settled settle(const Machine& machine, const SettleOptions& options) {
+  // Refuses machines that cannot be; what cannot be integrated afterwards does not settle.
+  steady_sliding(machine);
+  if (options.sharpness > 0) smoothed_law(machine.model, machine.parameters, options.sharpness);
+  return Settling(machine, options).run();
+}
 
 bool keeps_sticking(const Machine& machine, double sharpness) {
   const double period = natural_period(machine), cycle = longest_cycle(machine);
@@ -324,9 +284,10 @@ bool keeps_sticking(const Machine& machine, double sharpness) {
 }
 
 Swings swings_from(const Machine& machine, double velocity, double periods) {
-  SimulationOptions options{.duration = periods * natural_period(machine), .rate = 0};
-  options.start = BlockStart{steady_sliding(machine).displacement, velocity};
-  const SimulatedMotion motion = simulate(machine.rig, machine.drive(), machine.model, machine.parameters, options);
+  const SimulatedMotion motion =
+      motion_of(machine, {.duration = periods * natural_period(machine),
+                          .rate = 0,
+                          .start = BlockStart{steady_sliding(machine).displacement, velocity}});
   Swings out;
   const double first_stick = motion.slips.empty() ? 0 : motion.slips.front().restick_time;
   out.sticks = !std::isnan(first_stick);
@@ -337,11 +298,12 @@ Swings swings_from(const Machine& machine, double velocity, double periods) {
 SimulatedMotion settled_motion(const Machine& machine, const Settled& settled, std::size_t cycles, std::size_t samples,
                                const SettleOptions& options) {
   const double period = std::isnan(settled.frequency) ? natural_period(machine) : 1 / settled.frequency;
-  SimulationOptions simulation{.duration = static_cast<double>(cycles) * period,
-                               .rate = static_cast<double>(samples) / period,
-                               .settle = settled.begin};
-  simulation.start = start_of(machine, options.start);
-  return motion_of(machine, simulation, options.sharpness);
+  return motion_of(machine,
+                   {.duration = static_cast<double>(cycles) * period,
+                    .rate = static_cast<double>(samples) / period,
+                    .settle = settled.begin,
+                    .start = start_of(machine, options.start)},
+                   options.sharpness);
 }
 
 }  // namespace tribofit

@@ -19,23 +19,16 @@ SpeedProfile speed_of_run(const RunConditions& run) {
   return run.pauses.empty() ? constant_speed(run.speed) : stepped_speed({0}, {run.speed}, run.pauses);
 }
 
-/// Something lets the block creep in stick.
-bool creeps(const FrictionModel& model) {
-  return std::any_of(model.effects().begin(), model.effects().end(),
-                     [](const Effect& effect) { return describe(effect).sketch.view == SketchView::creep; });
+/// Something lets the block move in stick.
+bool moves_in_stick(const FrictionModel& model) {
+  return model.acts_in_stick() || std::any_of(model.effects().begin(), model.effects().end(), [](const Effect& effect) {
+           return describe(effect).sketch.view == SketchView::creep;
+         });
 }
 
 /// The motion as it is known of a simulation: nothing is to be found out about its channels, which takes half the time
-/// of a judgement. Where the block creeps in stick, its plateau is found as in a record.
-Motion motion_of(Trace trace, bool sticks, const Sensors& sensors, const FrictionModel& model, const StickRule& stick) {
-  if (model.acts_in_stick() || creeps(model)) {
-    MotionOptions plain;
-    plain.trim = false;
-    plain.undo_high_pass = plain.undo_distortions = false;
-    plain.undo_speed_ripple = false;
-    plain.stick = stick;
-    return compute_motion(std::move(trace), {}, plain);
-  }
+/// of a judgement.
+Motion known_motion(Trace trace, const StickRule& stick) {
   Motion out;
   out.step = trace.interval();
   const double radius = trace.conditions.radius.value;
@@ -53,10 +46,23 @@ Motion motion_of(Trace trace, bool sticks, const Sensors& sensors, const Frictio
   out.friction_kind = trace.friction_kind;
   out.conditions = std::move(trace.conditions);
   out.steps = std::move(trace.steps);
-  out.velocity_noise = sensors.velocity_noise;
   out.stick = stick;
-  out.sticks = sticks;
   return out;
+}
+
+/// The same noise in means over `samples` neighbours.
+Sensors averaged_noise(Sensors noise, double samples) {
+  if (!(samples > 1)) return noise;
+  // Variance of the mean of q neighbours of an autoregression, and covariance of two such means side by side.
+  const double q = samples, r = noise.noise_colour;
+  const double sum = r > 0 ? (1 - std::pow(r, q)) / (1 - r) : 1;
+  const double variance = r > 0 ? ((1 + r) / (1 - r) - 2 * r * sum / (q * (1 - r))) / q : 1 / q;
+  const double beside = r > 0 ? r * sum * sum / (q * q) : 0;
+  const double part = std::sqrt(variance);
+  noise.friction_noise *= part;
+  noise.velocity_noise *= part;
+  noise.noise_colour = std::clamp(beside / variance, 0.0, kMostNoiseCorrelation);
+  return noise;
 }
 
 }  // namespace
@@ -70,18 +76,20 @@ Sensors noise_of_record(const Motion& motion, const Segmentation& segmentation, 
   return sensors;
 }
 
-Sensors averaged_noise(Sensors noise, double samples) {
-  if (!(samples > 1)) return noise;
-  // Variance of the mean of q neighbours of an autoregression, and covariance of two such means side by side.
-  const double q = samples, r = noise.noise_colour;
-  const double sum = r > 0 ? (1 - std::pow(r, q)) / (1 - r) : 1;
-  const double variance = r > 0 ? ((1 + r) / (1 - r) - 2 * r * sum / (q * (1 - r))) / q : 1 / q;
-  const double beside = r > 0 ? r * sum * sum / (q * q) : 0;
-  const double part = std::sqrt(variance);
-  noise.friction_noise *= part;
-  noise.velocity_noise *= part;
-  noise.noise_colour = std::clamp(beside / variance, 0.0, kMostNoiseCorrelation);
-  return noise;
+Trace record_machine(const Machine& machine, const Drive& drive, SimulationOptions options, const Sensors& sensors,
+                     bool* sticks) {
+  const FrictionModel& model = machine.model;
+  const std::vector<double>& p = machine.parameters;
+  options.channels = recorded_channels(model, p, drive, sensors);
+  SimulatedMotion moved = simulate(machine.rig, drive, model, p, options);
+  if (sticks != nullptr) *sticks = std::find(moved.sticks.begin(), moved.sticks.end(), 1) != moved.sticks.end();
+  return recorded_trace(std::move(moved), model, p, sensors);
+}
+
+Motion plain_motion(Trace trace, const StickRule& stick) {
+  return compute_motion(
+      std::move(trace), {},
+      {.trim = false, .undo_high_pass = false, .undo_speed_ripple = false, .undo_distortions = false, .stick = stick});
 }
 
 SimulatedRun simulate_run(Machine machine, const RunConditions& run, const RecordToContinue& record,
@@ -109,23 +117,20 @@ SimulatedRun simulate_run(Machine machine, const RunConditions& run, const Recor
     drive.mean_temperature = record.reference_temperature;
     drive.temperature = [mean = mean_of(measured.temperature)](double) { return mean; };
   }
-  SimulationOptions options;
-  options.duration = run.duration;
   const double enough =
       std::clamp(kSimulatedSamples / run.duration, kLeastPartOfRate * record.simulated_rate, record.simulated_rate);
-  options.rate = std::min(run.rate, enough);
-  options.scatter = record.scatter;
-  options.seed = seed;
-  options.tolerance = kPlannedTolerance;
+  SimulationOptions options{.duration = run.duration,
+                            .rate = std::min(run.rate, enough),
+                            .scatter = record.scatter,
+                            .seed = seed,
+                            .tolerance = kPlannedTolerance};
   if (!(run.reversing > 0)) options.settle = settling_time(machine.rig, drive, machine.parameters);
   Sensors sensors = record.noise;  // of a sample at any rate; neighbours correlate over the same time
   sensors.noise_colour = std::pow(sensors.noise_colour, record.rate / run.rate);
   sensors = averaged_noise(sensors, run.rate / options.rate);
   sensors.seed = seed ^ 0x2545f4914f6cdd1du;
-  options.channels = recorded_channels(machine.model, machine.parameters, drive, sensors);
-  SimulatedMotion moved = simulate(machine.rig, drive, machine.model, machine.parameters, options);
-  const bool sticks = std::find(moved.sticks.begin(), moved.sticks.end(), 1) != moved.sticks.end();
-  Trace trace = recorded_trace(std::move(moved), machine.model, machine.parameters, sensors);
+  bool sticks = false;
+  Trace trace = record_machine(machine, drive, options, sensors, &sticks);
   trace.path = "simulated run";
   if (measured.load.empty()) trace.load.clear();
   if (force) trace.friction_kind = FrictionKind::force;
@@ -134,7 +139,13 @@ SimulatedRun simulate_run(Machine machine, const RunConditions& run, const Recor
   for (Step& step : trace.steps) step.conditions.load = trace.conditions.load;
 
   SimulatedRun out;
-  out.motion = motion_of(std::move(trace), sticks, sensors, machine.model, measured.stick);
+  if (moves_in_stick(machine.model)) {  // its plateau is found as in a record
+    out.motion = plain_motion(std::move(trace), measured.stick);
+  } else {
+    out.motion = known_motion(std::move(trace), measured.stick);
+    out.motion.velocity_noise = sensors.velocity_noise;
+    out.motion.sticks = sticks;
+  }
   out.segmentation = find_cycles(out.motion);
   return out;
 }

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
+#include "motion_measures.hpp"
 #include "tribofit/fit/fit.hpp"
 #include "tribofit/oscillator/machine.hpp"
 #include "tribofit/oscillator/sensors.hpp"
@@ -14,8 +16,11 @@ namespace tribofit {
 /// and the correlation of friction in stick from sample to sample, which stands for both channels as Sensors has one.
 Sensors noise_of_record(const Motion& motion, const Segmentation& segmentation, const Floor& floor);
 
-/// The same noise in means over `samples` neighbours.
-Sensors averaged_noise(Sensors noise, double samples);
+/// A record as a machine on its drive makes it, by these sensors. sticks: set to whether the block sticks in it.
+Trace record_machine(const Machine& machine, const Drive& drive, SimulationOptions options, const Sensors& sensors,
+                     bool* sticks = nullptr);
+/// Its motion, with nothing to be found out about its channels.
+Motion plain_motion(Trace trace, const StickRule& stick);
 
 /// What all simulated runs take from the record that they go on from.
 struct RecordToContinue {
@@ -38,5 +43,21 @@ struct SimulatedRun {
 /// simulated, and Stopped.
 SimulatedRun simulate_run(Machine machine, const RunConditions& run, const RecordToContinue& record,
                           std::uint64_t seed);
+
+/// Friction of one run over a variable, on a grid that all models share.
+enum class RunView { loop, stick_time, time };
+struct RunCurve {
+  std::vector<double> x, y;
+};
+/// loop: friction over v_r of the mean slip, at equal parts of it; stick_time: break-away over the stick before it;
+/// time: mean friction of the slips over time.
+RunCurve curve_of_run(const SimulatedRun& run, RunView view);
+
+/// What a person sees in a run: loop of friction over v_r in time and in distance, break-away, break-away after the
+/// longest sticks, least friction in slip, speed of creep in stick, change of friction over the record, swing of
+/// friction over a revolution, peak v_r, and frequency.
+const std::vector<MotionMeasureInfo>& run_measures();
+/// One value each [SI]; NaN where the run does not show it.
+std::vector<double> measure_run(const SimulatedRun& run);
 
 }  // namespace tribofit

@@ -37,26 +37,45 @@ void check(const SmoothedLaw& law, const SmoothedOptions& options) {
           "give e.g. 0.05, or 0 for the crest of the law");
 }
 
+/// One run of simulate_smoothed(): steps, and the events and samples within each.
 class SmoothedSimulation {
  public:
-  SmoothedSimulation(const Rig& rig, const Drive& drive, const SmoothedLaw& law, const SmoothedOptions& options);
-  SimulatedMotion run();
+  SmoothedSimulation(const Rig& rig, const Drive& drive, const SmoothedLaw& law, const SmoothedOptions& options)
+      : law_(law),
+        options_(options),
+        crest_(law.crest()),
+        setup_(rig, drive, FrictionModel(ExponentialLaw{})),
+        // Speeds of a slip are about that of the block when the drop of friction is let go.
+        absolute_tolerance_(0.1 * options.tolerance * drive.mean_load * law.mu_brk /
+                            (rig.mass * rig.natural_frequency())),
+        most_step_(2 * std::numbers::pi / rig.natural_frequency() / 8),
+        state_{setup_.natural_frequency * options.start.displacement, options.start.velocity},
+        time_(-options.settle),
+        next_step_(kFirstStep * most_step_) {
+    const double gap = relative_velocity(time_, state_);
+    if (std::abs(gap) > threshold(time_)) begin_slip(kNaN, gap < 0 ? -1 : 1);
+    stick_begin_ = time_;
+    state_conditions(setup_, options.rate, options.settle > 0, motion_);
+  }
+
+  SimulatedMotion run() {
+    if (options_.settle > 0) advance(0);
+    slid_ = 0;
+    last_lag_ = lag(0, state_);
+    samples_ = static_cast<std::size_t>(std::llround(options_.duration * options_.rate));
+    if (samples_ > 0) {
+      write_sample(0, state_);
+      next_sample_ = 1;
+    }
+    advance(options_.duration);
+    if (slipping_) motion_.slips.back().peak_speed = peak_speed_;
+    std::erase_if(motion_.slips, [](const SimulatedSlip& slip) { return slip.restick_time <= 0; });
+    return std::move(motion_);
+  }
 
  private:
   using Step = oscillator::RodasStep<double, 2>;
   using State = Step::State;  ///< sqrt(k/m) x and x' [m/s both]
-
-  void advance(double until);
-  double try_step(double h);
-  State state_at(double t) const;
-  void find_events();
-  void begin_slip(double t, int direction);
-  void end_slip(double t);
-  void sample();
-  void write_sample(double t, const State& y);
-  bool resolves_creep() const;
-  std::size_t most_steps() const;
-  [[noreturn]] void give_up(const std::string& reason) const;
 
   double relative_velocity(double t, const State& y) const { return setup_.disc_velocity(t) - y[1]; }
   /// |v_r| up to which the block counts as stuck.
@@ -68,9 +87,148 @@ class SmoothedSimulation {
     return (setup_.load(t) * law_.friction(relative_velocity(t, y)) - setup_.rig.damping * y[1]) / setup_.rig.mass -
            setup_.natural_frequency * y[0];
   }
-  double load_rate(double t) const;
+  /// dN/dt by a central difference over a small part of a period [N/s].
+  double load_rate(double t) const {
+    if (!setup_.drive.load) return 0;
+    const double h = 1e-4 / setup_.natural_frequency;
+    return (setup_.drive.load(t + h) - setup_.drive.load(t - h)) / (2 * h);
+  }
+  /// Way of the disc less that of the block.
+  double lag(double t, const State& y) const { return setup_.disc_travel(t) - y[0] / setup_.natural_frequency; }
+  /// Within the step just made.
+  State state_at(double t) const { return t < time_ ? step_.at((t - begin_) / (time_ - begin_)) : state_; }
+
+  void advance(double until) {
+    const double least = 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(until), most_step_);
+    while (time_ < until) {
+      if (!resolves_creep()) give_up("doubles do not resolve the creep of so sharp a law");
+      const double periods = setup_.natural_frequency / (2 * std::numbers::pi) * (time_ + options_.settle);
+      if (++steps_ > static_cast<std::size_t>(kFirstSteps + kStepsAPeriod * periods)) give_up("too many steps");
+      const double h = std::min(next_step_, until - time_), error = try_step(h);
+      const double change = oscillator::next_step_over_this(error);
+      // A step cut short by the end says nothing of longer ones.
+      const bool was_cut = error <= 1 && h < next_step_;
+      next_step_ = std::min(most_step_, was_cut ? std::max(next_step_, change * h) : change * h);
+      if (!(error <= 1)) {
+        if (next_step_ < least) give_up("the error stays too large down to steps of " + general(next_step_, 2) + " s");
+        continue;
+      }
+      begin_ = std::exchange(time_, until - time_ - h <= least ? until : time_ + h);
+      state_ = step_.after;
+      find_events();
+      sample();
+    }
+  }
+
+  /// A step of length h from the present state; root mean square of its error over what is allowed.
+  double try_step(double h) {
+    const double frequency = setup_.natural_frequency, mass = setup_.rig.mass;
+    const double v = relative_velocity(time_, state_), slope = setup_.load(time_) * law_.slope(v);
+    const double by_time = (slope * setup_.disc_acceleration(time_) + load_rate(time_) * law_.friction(v)) / mass;
+    const auto rates = [&](std::size_t stage, const State& y) -> State {
+      const double t = time_ + Step::place[stage] * h;
+      return {frequency * y[1], acceleration(t, y) + Step::by_time[stage] * h * by_time};
+    };
+    // I/(gamma h) - df/dy = ((d, -frequency), (frequency, d + damped)).
+    const double d = 1 / (Step::gamma * h), damped = (slope + setup_.rig.damping) / mass;
+    const double determinant = d * (d + damped) + frequency * frequency;
+    const auto solve = [&](const State& r) -> State {
+      return {((d + damped) * r[0] + frequency * r[1]) / determinant, (d * r[1] - frequency * r[0]) / determinant};
+    };
+    step_.take(state_, h, rates(0, state_), rates, solve);
+    double squares = 0;
+    for (std::size_t k = 0; k < state_.size(); ++k) {
+      const double size = std::max(std::abs(state_[k]), std::abs(step_.after[k]));
+      squares += std::pow(step_.error()[k] / (absolute_tolerance_ + options_.tolerance * size), 2) / 2;
+    }
+    return std::sqrt(squares);
+  }
+
+  /// v_r of a stick is the small difference of two speeds; its rounding must not move the friction.
+  bool resolves_creep() const {
+    const double rounding = std::numeric_limits<double>::epsilon() * std::abs(setup_.disc_velocity(time_));
+    return 2 / std::numbers::pi * law_.sharpness * rounding <= kMostRounding;
+  }
+
+  [[noreturn]] void give_up(const std::string& reason) const {
+    throw InputError(
+        fmt::format("the smoothed law cannot be integrated beyond t = {} s: {}; v_r = {} mm/s after {} steps",
+                    general(time_), reason, general(1e3 * relative_velocity(time_, state_), 3), steps_),
+        "lower the sharpness, or use the law with located events");
+  }
+
+  /// Where a value changes its sign within the step just made.
+  template <class Value>
+  std::optional<double> crossing(Value&& value) const {
+    const double at_begin = value(begin_, step_.before), at_end = value(time_, state_);
+    if (!(at_begin * at_end < 0)) return std::nullopt;
+    return find_zero([&](double t) { return value(t, state_at(t)); }, begin_, time_, at_begin, at_end);
+  }
+
+  /// Events within the step just made.
+  void find_events() {
+    const auto speed = [this](double t, const State& y) { return std::abs(relative_velocity(t, y)); };
+    if (const auto t = crossing([](double, const State& y) { return y[1]; }); t && *t >= 0) {
+      motion_.turning_points.push_back({*t, state_at(*t)[0] / setup_.natural_frequency, step_.before[1] > 0});
+    }
+    if (slipping_) {
+      const auto gain = [this](double t, const State& y) { return setup_.disc_acceleration(t) - acceleration(t, y); };
+      peak_speed_ = std::max({peak_speed_, speed(begin_, step_.before), speed(time_, state_)});
+      if (const auto t = crossing(gain)) peak_speed_ = std::max(peak_speed_, speed(*t, state_at(*t)));
+    }
+    if (const auto t = crossing([&](double at, const State& y) { return speed(at, y) - threshold(at); })) {
+      slipping_ ? end_slip(*t) : begin_slip(*t, relative_velocity(time_, state_) < 0 ? -1 : 1);
+    }
+  }
+
+  void begin_slip(double t, int direction) {
+    slipping_ = true;
+    peak_speed_ = 0;
+    SimulatedSlip slip{.break_away_time = t, .restick_time = kNaN, .direction = direction};
+    if (!std::isnan(t)) {
+      slip.stick_time = t - stick_begin_;
+      slip.break_away_friction = std::abs(law_.friction(relative_velocity(t, state_at(t))));
+    }
+    motion_.slips.push_back(std::move(slip));
+  }
+
+  void end_slip(double t) {
+    slipping_ = false;
+    stick_begin_ = t;
+    motion_.slips.back().restick_time = t;
+    motion_.slips.back().peak_speed = peak_speed_;
+  }
+
   /// Adds what was slid since the last call; v_r keeps its sign in between, but for the creep of a stick.
-  void slide(double t, const State& y);
+  void slide(double t, const State& y) {
+    const double now = lag(t, y);
+    slid_ += std::abs(now - std::exchange(last_lag_, now));
+  }
+
+  /// Samples within the step just made.
+  void sample() {
+    for (; next_sample_ < samples_; ++next_sample_) {
+      const double t = static_cast<double>(next_sample_) / options_.rate;
+      if (t > time_) break;
+      const State y = state_at(t);
+      slide(t, y);
+      write_sample(t, y);
+    }
+    slide(time_, state_);
+  }
+
+  void write_sample(double t, const State& y) {
+    const double v = relative_velocity(t, y);
+    motion_.time.push_back(t);
+    motion_.displacement.push_back(y[0] / setup_.natural_frequency);
+    motion_.velocity.push_back(y[1]);
+    motion_.acceleration.push_back(acceleration(t, y));
+    motion_.relative_velocity.push_back(v);
+    motion_.friction.push_back(law_.friction(v));
+    motion_.distance.push_back(slid_);
+    motion_.sticks.push_back(std::abs(v) <= threshold(t) ? 1 : 0);
+    write_conditions(setup_, t, true, motion_);
+  }
 
   const SmoothedLaw law_;
   const SmoothedOptions options_;
@@ -86,198 +244,6 @@ class SmoothedSimulation {
   double next_step_;
   Step step_;
 };
-
-SmoothedSimulation::SmoothedSimulation(const Rig& rig, const Drive& drive, const SmoothedLaw& law,
-                                       const SmoothedOptions& options)
-    : law_(law),
-      options_(options),
-      crest_(law.crest()),
-      setup_(rig, drive, FrictionModel(ExponentialLaw{})),
-      // Speeds of a slip are about that of the block when the drop of friction is let go.
-      absolute_tolerance_(0.1 * options.tolerance * drive.mean_load * law.mu_brk /
-                          (rig.mass * rig.natural_frequency())),
-      most_step_(2 * std::numbers::pi / rig.natural_frequency() / 8),
-      state_{setup_.natural_frequency * options.start.displacement, options.start.velocity},
-      time_(-options.settle),
-      next_step_(kFirstStep * most_step_) {
-  const double gap = relative_velocity(time_, state_);
-  if (std::abs(gap) > threshold(time_)) begin_slip(kNaN, gap < 0 ? -1 : 1);
-  stick_begin_ = time_;
-  motion_.rate = options.rate;
-  motion_.settled = options.settle > 0;
-  motion_.radius = drive.radius;
-  motion_.stated_speed = drive.speed.constant ? drive.speed.speed(0) : kNaN;
-  motion_.mean_load = drive.mean_load;
-  motion_.mean_temperature = drive.mean_temperature;
-}
-
-/// dN/dt by a central difference over a small part of a period [N/s].
-double SmoothedSimulation::load_rate(double t) const {
-  if (!setup_.drive.load) return 0;
-  const double h = 1e-4 / setup_.natural_frequency;
-  return (setup_.drive.load(t + h) - setup_.drive.load(t - h)) / (2 * h);
-}
-
-SimulatedMotion SmoothedSimulation::run() {
-  if (options_.settle > 0) advance(0);
-  slid_ = 0;
-  last_lag_ = setup_.disc_travel(0) - state_[0] / setup_.natural_frequency;
-  samples_ = static_cast<std::size_t>(std::llround(options_.duration * options_.rate));
-  if (samples_ > 0) {
-    write_sample(0, state_);
-    next_sample_ = 1;
-  }
-  advance(options_.duration);
-  if (slipping_) motion_.slips.back().peak_speed = peak_speed_;
-  std::erase_if(motion_.slips, [](const SimulatedSlip& slip) { return slip.restick_time <= 0; });
-  return std::move(motion_);
-}
-
-void SmoothedSimulation::advance(double until) {
-  const double least = 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(until), most_step_);
-  while (time_ < until) {
-    if (!resolves_creep()) give_up("doubles do not resolve the creep of so sharp a law");
-    if (++steps_ > most_steps()) give_up("too many steps");
-    const double h = std::min(next_step_, until - time_), error = try_step(h);
-    const double change = oscillator::next_step_over_this(error);
-    // A step cut short by the end says nothing of longer ones.
-    const bool was_cut = error <= 1 && h < next_step_;
-    next_step_ = std::min(most_step_, was_cut ? std::max(next_step_, change * h) : change * h);
-    if (!(error <= 1)) {
-      if (next_step_ < least) give_up("the error stays too large down to steps of " + general(next_step_, 2) + " s");
-      continue;
-    }
-    begin_ = std::exchange(time_, until - time_ - h <= least ? until : time_ + h);
-    state_ = step_.after;
-    find_events();
-    sample();
-  }
-}
-
-/// A step of length h from the present state; root mean square of its error over what is allowed.
-double SmoothedSimulation::try_step(double h) {
-  const double frequency = setup_.natural_frequency, mass = setup_.rig.mass;
-  const double v = relative_velocity(time_, state_), slope = setup_.load(time_) * law_.slope(v);
-  const double by_time = (slope * setup_.disc_acceleration(time_) + load_rate(time_) * law_.friction(v)) / mass;
-  const auto rates = [&](std::size_t stage, const State& y) -> State {
-    const double t = time_ + Step::place[stage] * h;
-    return {frequency * y[1], acceleration(t, y) + Step::by_time[stage] * h * by_time};
-  };
-  // I/(gamma h) - df/dy = ((d, -frequency), (frequency, d + damped)).
-  const double d = 1 / (Step::gamma * h), damped = (slope + setup_.rig.damping) / mass;
-  const double determinant = d * (d + damped) + frequency * frequency;
-  const auto solve = [&](const State& r) -> State {
-    return {((d + damped) * r[0] + frequency * r[1]) / determinant, (d * r[1] - frequency * r[0]) / determinant};
-  };
-  step_.take(state_, h, rates(0, state_), rates, solve);
-  double squares = 0;
-  for (std::size_t k = 0; k < state_.size(); ++k) {
-    const double size = std::max(std::abs(state_[k]), std::abs(step_.after[k]));
-    squares += std::pow(step_.error()[k] / (absolute_tolerance_ + options_.tolerance * size), 2) / 2;
-  }
-  return std::sqrt(squares);
-}
-
-/// Within the step just made.
-SmoothedSimulation::State SmoothedSimulation::state_at(double t) const {
-  return t < time_ ? step_.at((t - begin_) / (time_ - begin_)) : state_;
-}
-
-/// v_r of a stick is the small difference of two speeds; its rounding must not move the friction.
-bool SmoothedSimulation::resolves_creep() const {
-  const double rounding = std::numeric_limits<double>::epsilon() * std::abs(setup_.disc_velocity(time_));
-  return 2 / std::numbers::pi * law_.sharpness * rounding <= kMostRounding;
-}
-
-std::size_t SmoothedSimulation::most_steps() const {
-  const double periods = setup_.natural_frequency / (2 * std::numbers::pi) * (time_ + options_.settle);
-  return static_cast<std::size_t>(kFirstSteps + kStepsAPeriod * periods);
-}
-
-void SmoothedSimulation::give_up(const std::string& reason) const {
-  throw InputError(
-      fmt::format("the smoothed law cannot be integrated beyond t = {} s: {}; v_r = {} mm/s after {} steps",
-                  general(time_), reason, general(1e3 * relative_velocity(time_, state_), 3), steps_),
-      "lower the sharpness, or use the law with located events");
-}
-
-/// Events within the step just made.
-void SmoothedSimulation::find_events() {
-  const double begin = begin_, end = time_;
-  const State &before = step_.before, &after = state_;
-  const auto crossing = [&](auto&& value) -> std::optional<double> {
-    const double at_begin = value(begin, before), at_end = value(end, after);
-    if (!(at_begin * at_end < 0)) return std::nullopt;
-    return find_zero([&](double t) { return value(t, state_at(t)); }, begin, end, at_begin, at_end);
-  };
-  const auto speed = [this](double t, const State& y) { return std::abs(relative_velocity(t, y)); };
-
-  if (const auto t = crossing([](double, const State& y) { return y[1]; }); t && *t >= 0) {
-    motion_.turning_points.push_back({*t, state_at(*t)[0] / setup_.natural_frequency, before[1] > 0});
-  }
-  if (slipping_) {
-    const auto gain = [this](double t, const State& y) { return setup_.disc_acceleration(t) - acceleration(t, y); };
-    peak_speed_ = std::max({peak_speed_, speed(begin, before), speed(end, after)});
-    if (const auto t = crossing(gain)) peak_speed_ = std::max(peak_speed_, speed(*t, state_at(*t)));
-  }
-  const auto excess = [&](double t, const State& y) { return speed(t, y) - threshold(t); };
-  if (const auto t = crossing(excess)) {
-    slipping_ ? end_slip(*t) : begin_slip(*t, relative_velocity(end, after) < 0 ? -1 : 1);
-  }
-}
-
-void SmoothedSimulation::begin_slip(double t, int direction) {
-  slipping_ = true;
-  peak_speed_ = 0;
-  const bool begins_so = std::isnan(t);
-  const double friction = begins_so ? 0 : std::abs(law_.friction(relative_velocity(t, state_at(t))));
-  motion_.slips.push_back({.break_away_time = t,
-                           .restick_time = kNaN,
-                           .stick_time = begins_so ? 0 : t - stick_begin_,
-                           .direction = direction,
-                           .break_away_friction = friction});
-}
-
-void SmoothedSimulation::end_slip(double t) {
-  slipping_ = false;
-  stick_begin_ = t;
-  motion_.slips.back().restick_time = t;
-  motion_.slips.back().peak_speed = peak_speed_;
-}
-
-void SmoothedSimulation::slide(double t, const State& y) {
-  const double lag = setup_.disc_travel(t) - y[0] / setup_.natural_frequency;
-  slid_ += std::abs(lag - last_lag_);
-  last_lag_ = lag;
-}
-
-/// Samples within the step just made.
-void SmoothedSimulation::sample() {
-  for (; next_sample_ < samples_; ++next_sample_) {
-    const double t = static_cast<double>(next_sample_) / options_.rate;
-    if (t > time_) break;
-    const State y = state_at(t);
-    slide(t, y);
-    write_sample(t, y);
-  }
-  slide(time_, state_);
-}
-
-void SmoothedSimulation::write_sample(double t, const State& y) {
-  const double v = relative_velocity(t, y);
-  motion_.time.push_back(t);
-  motion_.displacement.push_back(y[0] / setup_.natural_frequency);
-  motion_.velocity.push_back(y[1]);
-  motion_.acceleration.push_back(acceleration(t, y));
-  motion_.relative_velocity.push_back(v);
-  motion_.friction.push_back(law_.friction(v));
-  motion_.disc_speed.push_back(setup_.disc_speed(t));
-  motion_.disc_angle.push_back(setup_.drive.speed.angle(t));
-  motion_.distance.push_back(slid_);
-  if (setup_.drive.load) motion_.load.push_back(setup_.load(t));
-  if (setup_.drive.temperature) motion_.temperature.push_back(setup_.temperature(t));
-  motion_.sticks.push_back(std::abs(v) <= threshold(t) ? 1 : 0);
-}
 
 }  // namespace
 

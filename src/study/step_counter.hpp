@@ -3,13 +3,15 @@
 #include <cstddef>
 #include <functional>
 #include <mutex>
+#include <utility>
 
 namespace tribofit {
 
 /// Counts what several threads have done and reports the part, from one of them at a time.
 class StepCounter {
  public:
-  StepCounter(std::size_t steps, const std::function<void(double)>& progress) : steps_(steps), progress_(progress) {}
+  StepCounter(std::size_t steps, std::function<void(double)> progress)
+      : steps_(steps), progress_(std::move(progress)) {}
   void step() {
     if (!progress_) return;
     const std::lock_guard lock(mutex_);
@@ -18,7 +20,7 @@ class StepCounter {
 
  private:
   std::size_t steps_, done_ = 0;
-  const std::function<void(double)>& progress_;
+  std::function<void(double)> progress_;
   std::mutex mutex_;
 };
 

@@ -1,8 +1,4 @@
 #include "tribofit/study/twin.hpp"
-#include "fit/assessment.hpp"
-#include "limits.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,21 +7,21 @@
 #include <numbers>
 #include <utility>
 
-#include "fit_machines.hpp"
+#include "fit/assessment.hpp"
+#include "fit/fit_laws.hpp"
+#include "fit/requested_effects.hpp"
+#include "limits.hpp"
 #include "motion_measures.hpp"
 #include "simulated_run.hpp"
 #include "statistics/reductions.hpp"
 #include "step_counter.hpp"
 #include "tribofit/execution/parallel.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/oscillator/sensors.hpp"
-#include "tribofit/oscillator/simulate_recording.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 
 namespace tribofit {
 namespace {
 
-constexpr std::size_t kBreakAway = 3;  // among the measures
 const double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// A channel as a function of time since the record's first sample: means over `grid` [s] with straight lines between.
@@ -47,17 +43,10 @@ std::function<double(double)> follow(const std::vector<double>& channel, double 
   };
 }
 
-/// What a simulation takes from the record: its length, and the conditions it was run under.
-struct RecordedConditions {
-  explicit RecordedConditions(const Motion& recorded) : motion(recorded), duration(recorded.duration()) {}
-  const Motion& motion;  ///< whose friction and v_r are not read
-  double duration;       ///< [s]
-};
-
-SpeedProfile speed_of(const Motion& motion, double duration, double radius, double grid) {
+SpeedProfile speed_of(const Motion& motion, double radius, double grid) {
   std::vector<double> times, speeds;
   const std::function<double(double)> velocity = follow(motion.disc_velocity, motion.step, grid);
-  for (double t = 0; t < duration; t += grid) {
+  for (double t = 0; t < motion.duration(); t += grid) {
     times.push_back(t);
     speeds.push_back(velocity(t) / radius);
   }
@@ -65,11 +54,10 @@ SpeedProfile speed_of(const Motion& motion, double duration, double radius, doub
 }
 
 /// The machine's drive at the record's own conditions.
-Drive drive_of(const Machine& machine, const RecordedConditions& recorded) {
-  const Motion& motion = recorded.motion;
+Drive drive_of(const Machine& machine, const Motion& motion) {
   Drive drive = machine.drive();
   const double grid = 2 * std::numbers::pi / machine.rig.natural_frequency() / kConditionsAPeriod;
-  if (!motion.disc_velocity.empty()) drive.speed = speed_of(motion, recorded.duration, machine.radius, grid);
+  if (!motion.disc_velocity.empty()) drive.speed = speed_of(motion, machine.radius, grid);
   if (!motion.load.empty() && motion.friction_kind == FrictionKind::coefficient) {
     drive.load = follow(motion.load, motion.step, grid);
   }
@@ -85,28 +73,19 @@ double compliance(const Machine& machine) {
   return machine.load / machine.rig.stiffness;
 }
 
-/// One simulated record as the measured one is read. shown: takes three cycles of it where it is given.
+/// One simulated record as the measured one is read. recorded: whose friction and v_r are not there any more; shown:
+/// takes three cycles of it where it is given.
 MotionMeasures simulated_measures(const Machine& machine, const BreakAwayScatter& scatter, Sensors sensors,
-                                  const RecordedConditions& recorded, std::uint64_t seed, BlockMotion* shown) {
+                                  const Motion& recorded, std::uint64_t seed, BlockMotion* shown) {
   const Drive drive = drive_of(machine, recorded);
-  SimulationOptions options;
-  options.duration = recorded.duration;
-  options.rate = 1 / recorded.motion.step;
-  options.scatter = scatter;
-  options.seed = seed;
+  SimulationOptions options{
+      .duration = recorded.duration(), .rate = 1 / recorded.step, .scatter = scatter, .seed = seed};
   if (drive.speed.constant) options.settle = settling_time(machine.rig, drive, machine.parameters);
-  options.channels = recorded_channels(machine.model, machine.parameters, drive, sensors);
   sensors.seed = seed + 0x9e3779b97f4a7c15u;
-  Trace trace = recorded_trace(simulate(machine.rig, drive, machine.model, machine.parameters, options), machine.model,
-                               machine.parameters, sensors);
+  Trace trace = record_machine(machine, drive, options, sensors);
   trace.conditions.radius = {machine.radius, "twin"};
   if (drive.speed.constant) trace.conditions.speed = {machine.speed, "twin"};
-  const Motion twin = compute_motion(std::move(trace), {},
-                                     {.trim = false,
-                                      .undo_high_pass = false,
-                                      .undo_speed_ripple = false,
-                                      .undo_distortions = false,
-                                      .stick = recorded.motion.stick});
+  const Motion twin = plain_motion(std::move(trace), recorded.stick);
   const Segmentation cycles = find_cycles(twin);
   if (cycles.kind != MotionKind::stick_slip || cycles.cycles.size() < 4) return {};
   if (shown != nullptr) *shown = block_motion(twin, cycles, compliance(machine));
@@ -119,7 +98,7 @@ class Predictions {
   Predictions(const std::vector<MotionMeasures>& simulations, const Estimate& break_away)
       : simulations_(simulations), break_away_(break_away.value) {}
 
-  /// With its error and the difference in those. `given_break_away`: at the mean break-away that the record has, by a
+  /// With its error and the difference in those. given_break_away: at the mean break-away that the record has, by a
   /// straight line through the simulations; else their mean.
   TwinMeasure::Simulated of(std::vector<Estimate> MotionMeasures::*list, std::size_t k, const Estimate& measured,
                             bool given_break_away) const {
@@ -127,7 +106,7 @@ class Predictions {
     double within = 0;
     for (const MotionMeasures& m : simulations_) {
       if ((m.*list).empty() || !std::isfinite((m.*list)[k].value)) continue;
-      x.push_back(given_break_away ? m.values[kBreakAway].value - break_away_ : 0);
+      x.push_back(given_break_away ? m.break_away().value - break_away_ : 0);
       y.push_back((m.*list)[k].value);
       if (std::isfinite((m.*list)[k].std_error)) within += std::pow((m.*list)[k].std_error, 2);
     }
@@ -170,8 +149,8 @@ double portrait_distance(const std::vector<Estimate>& measured, const Prediction
 }
 
 std::vector<MotionMeasures> simulate_column(const IdentifiedMachine& identified, const Sensors& sensors,
-                                            const RecordedConditions& recorded, std::size_t count,
-                                            const TwinOptions& options, StepCounter& counter, BlockMotion& shown) {
+                                            const Motion& recorded, std::size_t count, const TwinOptions& options,
+                                            StepCounter& counter, BlockMotion& shown) {
   const std::vector<Machine> machines = draws_of(identified.machine, identified.covariance, count, options.seed);
   std::vector<MotionMeasures> out(machines.size());
   run_tasks(machines.size(), options.threads, [&](std::size_t k) {
@@ -186,40 +165,116 @@ std::vector<MotionMeasures> simulate_column(const IdentifiedMachine& identified,
 }
 
 void add_column(const MotionMeasures& measured, const std::vector<MotionMeasures>& simulations, Twin& twin) {
-  const Predictions predictions(simulations, measured.values[kBreakAway]);
+  const Predictions predictions(simulations, measured.break_away());
   double squares = 0, n = 0;
   bool missing = false;
-  const auto count = [&](double d) {
+  const auto add = [&](TwinMeasure& measure, const TwinMeasure::Simulated& simulated) {
+    const double d = simulated.difference;
+    measure.simulated.push_back(simulated);
+    if (!std::isfinite(measure.measured)) return;
     if (std::isfinite(d)) squares += d * d, n += 1;
     missing |= !std::isfinite(d);
   };
   for (std::size_t k = 0; k + 1 < twin.measures.size(); ++k) {
-    if (!std::isfinite(measured.values[k].value)) {
-      twin.measures[k].simulated.push_back({kNone, kNone, kNone});
-      continue;
-    }
-    const auto value = predictions.of(&MotionMeasures::values, k, measured.values[k], k != kBreakAway);
-    count(value.difference);
-    twin.measures[k].simulated.push_back(value);
+    const Estimate& value = measured.values[k];
+    const bool known = std::isfinite(value.value), at_break_away = &value != &measured.break_away();
+    add(twin.measures[k], known ? predictions.of(&MotionMeasures::values, k, value, at_break_away)
+                                : TwinMeasure::Simulated{kNone, kNone, kNone});
   }
   const double distance = portrait_distance(measured.portrait, predictions);
-  count(distance);
-  twin.measures.back().simulated.push_back({distance, kNone, distance});
+  add(twin.measures.back(), {distance, kNone, distance});
   twin.rms_difference.push_back(n > 0 && !missing ? std::sqrt(squares / n) : kNone);
 }
 
-void say_what_fails(Twin& twin) {
-  for (std::size_t c = 0; c < twin.columns.size(); ++c) {
-    if (!std::isfinite(twin.rms_difference[c])) {
-      twin.messages.push_back(twin.columns[c] + ": the twin does not stick and slip as the record does");
-      continue;
+/// Whether the twin of a column moves as the record does.
+std::string agreement_of(const Twin& twin, std::size_t column) {
+  const std::string& name = twin.columns[column];
+  if (!std::isfinite(twin.rms_difference[column]))
+    return name + ": the twin does not stick and slip as the record does";
+  std::string off;
+  for (const std::string& measure : twin.failures(column)) off += (off.empty() ? "" : ", ") + measure;
+  return name + (off.empty() ? ": the twin moves as the record does, within its errors" : ": the twin fails in " + off);
+}
+
+void refuse_without_stick_slip(Identification& trace) {
+  if (!trace.analysed || trace.segmentation.kind == MotionKind::stick_slip) return;
+  trace.refuse(trace.segmentation.kind == MotionKind::always_sticking
+                   ? "the block never slips: there is no motion to compare"
+                   : "the block never sticks: there are no cycles to compare");
+}
+
+/// Fits the laws with the effects of the options and adds the best of them, with its rig.
+void add_best(const IdentifyOptions& options, std::vector<Fit>& best, TwinIdentification& out) {
+  Identification& trace = out.trace;
+  if (trace.analysed) fit_laws(options, trace);
+  if (!trace.analysed) return;
+  best.push_back(trace.fits[trace.best]);
+  out.rigs.push_back(rig_beside(best.back(), trace.motion, trace.segmentation, options.instruments));
+  if (!out.rigs.back().determined) trace.refuse("the rig could not be identified: " + out.rigs.back().reason);
+}
+
+/// The bare laws, then those with the effects of friction; `out.trace` holds the best fits afterwards.
+void fit_machines(const IdentifyOptions& options, TwinIdentification& out) {
+  IdentifyOptions plan = options;
+  plan.published_protocol = false;
+  plan.effects.clear();
+  std::vector<Fit> best;
+  add_best(plan, best, out);
+  plan.effects = options.effects;
+  if (!friction_effects(options.effects).empty()) add_best(plan, best, out);
+  out.trace.fits = std::move(best);
+  out.trace.best = out.trace.fits.empty() ? 0 : out.trace.fits.size() - 1;
+}
+
+/// One machine for each fit; none where one of them cannot be had, and `twin` says why.
+std::vector<IdentifiedMachine> machines_of(const TwinIdentification& all, Twin& twin) {
+  const Identification& trace = all.trace;
+  std::vector<IdentifiedMachine> machines;
+  for (std::size_t c = 0; c < trace.fits.size(); ++c) {
+    machines.push_back(identified_machine(trace.fits[c], all.rigs[c], trace.motion, trace.segmentation));
+    twin.reason = machines.back().reason;
+    if (!twin.reason.empty()) return {};
+    for (const std::string& note : machines.back().notes) {
+      twin.messages.push_back(trace.fits[c].model.name() + ": " + note);
     }
-    const std::vector<std::string> off = twin.failures(c);
-    std::string names;
-    for (const std::string& name : off) names += (names.empty() ? "" : ", ") + name;
-    twin.messages.push_back(twin.columns[c] + (off.empty() ? ": the twin moves as the record does, within its errors"
-                                                           : ": the twin fails in " + names));
   }
+  return machines;
+}
+
+/// Simulates each of the fits on its rig and compares.
+Twin compare_machines(const TwinOptions& options, TwinIdentification& all) {
+  Motion& motion = all.trace.motion;
+  const Segmentation& segmentation = all.trace.segmentation;
+  Twin twin;
+  const std::vector<IdentifiedMachine> machines = machines_of(all, twin);
+  if (machines.empty()) return twin;
+  const MotionMeasures measured = measure_motion(motion, segmentation);
+  const bool force = motion.friction_kind == FrictionKind::force;
+  for (std::size_t k = 0; k < measured.values.size(); ++k) {
+    const MotionMeasureInfo& info = motion_measures()[k];
+    const Estimate& m = measured.values[k];
+    twin.measures.push_back(
+        {info.name, info.unit == "1" && force ? "N" : info.unit, info.si, m.value, m.std_error, {}});
+  }
+  twin.measures.push_back({"phase portrait", "std errors", 1, 0, kNone, {}});
+  const auto affordable = static_cast<std::size_t>(kMostSimulatedSamples / static_cast<double>(motion.size()));
+  twin.simulations = std::max(kFewestSimulations, std::min(options.simulations, affordable));
+  const Sensors sensors = noise_of_record(motion, segmentation, all.trace.fits[0].floor);
+  twin.measured = block_motion(motion, segmentation, compliance(machines.back().machine));
+  // A long record and those that are simulated beside it do not fit into memory together.
+  std::vector<double>().swap(motion.friction);
+  std::vector<double>().swap(motion.relative_velocity);
+  std::function<void(double)> say;
+  if (options.progress) say = [&](double part) { options.progress("simulating twins", part); };
+  StepCounter counter(machines.size() * twin.simulations, say);
+  for (std::size_t c = 0; c < machines.size(); ++c) {
+    const auto simulations = simulate_column(machines[c], sensors, motion, twin.simulations, options, counter,
+                                             twin.simulated.emplace_back());
+    twin.columns.push_back(all.trace.fits[c].model.name());
+    add_column(measured, simulations, twin);
+    twin.messages.push_back(agreement_of(twin, c));
+  }
+  return twin;
 }
 
 }  // namespace
@@ -251,55 +306,17 @@ bool TwinIdentification::law_falls_short() const {
   return !trace.fits.empty() && is_conditional(trace.fits.back());
 }
 
-Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::span<const Fit> fits,
-                   std::span<const RigFit> rigs, const TwinOptions& options) {
-  return compare_twins(motion, segmentation, fits, rigs, options, [] {});
-}
-
-Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::span<const Fit> fits,
-                   std::span<const RigFit> rigs, const TwinOptions& options,
-                   const std::function<void()>& measured_all) {
-  Twin twin;
-  if (segmentation.kind != MotionKind::stick_slip) {
-    twin.reason = "the block does not stick and slip: there is no cycle to compare";
-    return twin;
+void add_twins(const IdentifyOptions& options, TwinOptions more, TwinIdentification& out) {
+  Identification& trace = out.trace;
+  refuse_without_stick_slip(trace);
+  fit_machines(options, out);
+  more.threads = options.threads;
+  if (trace.analysed) {
+    out.twin = compare_machines(more, out);
+  } else {
+    out.twin.reason = trace.warnings.back();
   }
-  std::vector<IdentifiedMachine> machines;
-  for (std::size_t c = 0; c < fits.size(); ++c) {
-    const Fit& fit = fits[c];
-    machines.push_back(identified_machine(fit, rigs[c], motion, segmentation));
-    if (!machines.back().reason.empty()) {
-      twin.reason = machines.back().reason;
-      return twin;
-    }
-    for (const std::string& note : machines.back().notes) twin.messages.push_back(fit.model.name() + ": " + note);
-  }
-  const MotionMeasures measured = measure_motion(motion, segmentation);
-  const bool force = motion.friction_kind == FrictionKind::force;
-  for (std::size_t k = 0; k < measured.values.size(); ++k) {
-    const MotionMeasureInfo& info = motion_measures()[k];
-    const Estimate& m = measured.values[k];
-    twin.measures.push_back(
-        {info.name, info.unit == "1" && force ? "N" : info.unit, info.si, m.value, m.std_error, {}});
-  }
-  twin.measures.push_back({"phase portrait", "std errors", 1, 0, kNone, {}});
-  const auto affordable = static_cast<std::size_t>(kMostSimulatedSamples / static_cast<double>(motion.size()));
-  twin.simulations = std::max(kFewestSimulations, std::min(options.simulations, affordable));
-  const Sensors sensors = noise_of_record(motion, segmentation, fits.empty() ? Floor{} : fits[0].floor);
-  if (!machines.empty()) twin.measured = block_motion(motion, segmentation, compliance(machines.back().machine));
-  const RecordedConditions recorded(motion);
-  measured_all();
-  std::function<void(double)> say;
-  if (options.progress) say = [&](double part) { options.progress("simulating twins", part); };
-  StepCounter counter(machines.size() * twin.simulations, say);
-  for (std::size_t c = 0; c < machines.size(); ++c) {
-    const auto simulations = simulate_column(machines[c], sensors, recorded, twin.simulations, options, counter,
-                                             twin.simulated.emplace_back());
-    twin.columns.push_back(fits[c].model.name());
-    add_column(measured, simulations, twin);
-  }
-  say_what_fails(twin);
-  return twin;
+  trace.analysed = out.twin.reason.empty();
 }
 
 }  // namespace tribofit

@@ -12,11 +12,6 @@ namespace tribofit {
 
 namespace {
 
-/// A parameter of the model as studies call it: mu_s, alpha, viscous.sigma.
-std::string called(const FrictionModel::Slot& slot) {
-  return slot.effect.empty() ? slot.parameter.name : slot.effect + "." + slot.parameter.name;
-}
-
 template <class Known>
 [[noreturn]] void refuse(std::string_view what, std::string_view name, const Known& known) {
   std::vector<std::string> names;
@@ -61,7 +56,7 @@ std::vector<Variable> variables_of(const Machine& machine) {
     const FrictionModel::Slot& slot = machine.model.parameters()[k];
     const Parameter& q = slot.parameter;
     const std::optional<Unit> unit = find_unit(q.unit);
-    out.push_back({.name = called(slot),
+    out.push_back({.name = slot.full_name(),
                    .unit = q.unit,
                    .si = q.si,
                    .quantity = unit ? unit->quantity : Quantity::dimensionless,

@@ -1,5 +1,3 @@
-#include "weighing.hpp"
-
 #include <boost/math/distributions/normal.hpp>
 
 #include <algorithm>
@@ -10,8 +8,8 @@
 
 #include "diagnosis/limits.hpp"
 #include "diagnosis/ruling.hpp"
-#include "hand_measurements.hpp"
 #include "limits.hpp"
+#include "open_question.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/statistics/distributions.hpp"
 
@@ -19,11 +17,16 @@ namespace tribofit {
 
 namespace {
 
+/// The value that is not exceeded with this chance, which is kept off 0 and 1 by `least`.
+double normal_quantile(double chance, double least) {
+  static const boost::math::normal_distribution<double> normal;
+  return boost::math::quantile(normal, std::clamp(chance, least, 1 - least));
+}
+
 /// Chance that the p-value of another record of the same truth is below `level`, from those of some draws. cycles: so
 /// many times as many as the draws had.
 double chance_of_p(const std::vector<Evidence>& draws, double level, double cycles) {
-  const boost::math::normal_distribution<double> normal;
-  const auto z_of = [&](double p) { return boost::math::quantile(normal, 1 - std::clamp(p, 1e-15, 1 - 1e-15)); };
+  const auto z_of = [](double p) { return normal_quantile(1 - std::clamp(p, 1e-15, 1 - 1e-15), 0); };
   double sum = 0;
   for (const Evidence& draw : draws) sum += z_of(draw.p_value);
   const auto n = static_cast<double>(draws.size());
@@ -34,7 +37,7 @@ double chance_of_p(const std::vector<Evidence>& draws, double level, double cycl
 ///
 /// What the run adds to the difference has, with the right one known, a variance of four times its mean; what the
 /// records gave before is what it is. Draws of other parameters spread more, which shows in the draws: the theory
-/// counts as kDrawsOfTheory of them. The mean is that of the draws, with its error.
+/// counts as kDrawsOfModel of them. The mean is that of the draws, with its error.
 double chance_to_distinguish(const std::vector<Evidence>& draws, std::size_t rival, double now,
                              const Lengthening& lengthening) {
   const double longer = lengthening.of_runs;
@@ -50,7 +53,8 @@ double chance_to_distinguish(const std::vector<Evidence>& draws, std::size_t riv
   for (const Evidence& draw : draws) {
     if (std::isfinite(draw.ahead[rival])) squares += std::pow(draw.ahead[rival] - now - added, 2);
   }
-  const double variance = longer * (kDrawsOfTheory * of_theory + squares) / (kDrawsOfTheory + n - 1);
+  constexpr auto theory = static_cast<double>(kDrawsOfModel);
+  const double variance = longer * (theory * of_theory + squares) / (theory + n - 1);
   const double mean = now + longer * added;
   const double least = std::max(diagnosis::limits::kDistinguishable, size / n);
   const double beyond = (mean - least) / std::sqrt(variance * (1 + longer / n));
@@ -58,22 +62,43 @@ double chance_to_distinguish(const std::vector<Evidence>& draws, std::size_t riv
 }
 
 /// The records as they are, then the simulated ones.
-std::vector<Record> with_runs(const DiagnosedTraces& diagnosed, const std::vector<SimulatedRun>& runs) {
-  std::vector<Record> records = records_of(diagnosed);
+std::vector<Record> with_runs(const OpenQuestion& question, const std::vector<SimulatedRun>& runs) {
+  std::vector<Record> records = question.records();
   for (const SimulatedRun& run : runs) {
     if (run.segmentation.kind != MotionKind::always_sticking) records.push_back({&run.motion, &run.segmentation});
   }
   return records;
 }
 
+/// What a diagnosis says, of a truth that is known.
+Answer answer_of(const Diagnosis& d, const OpenQuestion& question, std::size_t truth) {
+  const auto rung_with = [&](const std::string& key) {
+    return std::find_if(d.ladder.begin(), d.ladder.end(), [&](const Rung& rung) {
+      const auto& others = rung.equivalent;
+      return rung.added == key || std::find(others.begin(), others.end(), key) != others.end();
+    });
+  };
+  bool any = false, possible = false;
+  for (const Effect& effect : question.asked) {
+    const std::string key = describe(effect).key;
+    any |= rung_with(key) != d.ladder.end();
+    possible |= std::any_of(d.effects.begin(), d.effects.end(), [&](const EffectFinding& finding) {
+      return finding.key == key && finding.status == EffectStatus::possible;
+    });
+  }
+  if (question.without(truth)) return any ? Answer::wrong : possible ? Answer::open : Answer::named;
+  const std::string own = describe(question.asked[truth]).key;
+  const auto held = rung_with(own);
+  if (held == d.ladder.end()) return any ? Answer::wrong : Answer::open;
+  return held->added == own && held->equivalent.empty() ? Answer::named : Answer::open;
+}
+
 }  // namespace
 
 double chance_of_all(const std::vector<double>& chances) {
-  const boost::math::normal_distribution<double> normal;
   constexpr double kStep = 0.05, kEnd = 6;
   std::vector<double> beyond;
-  for (const double chance : chances)
-    beyond.push_back(boost::math::quantile(normal, std::clamp(chance, 1e-9, 1 - 1e-9)));
+  for (const double chance : chances) beyond.push_back(normal_quantile(chance, 1e-9));
   double sum = 0, weights = 0;
   for (double common = -kEnd; common <= kEnd; common += kStep) {
     const double weight = std::exp(-0.5 * common * common);
@@ -86,8 +111,8 @@ double chance_of_all(const std::vector<double>& chances) {
 }
 
 std::vector<SimulatedRun> runs_of(const OpenQuestion& question, const Experiment& experiment, std::size_t truth,
-                                  std::uint64_t draw, const PlanOptions& options) {
-  const std::uint64_t seed = options.seed * 1000003 + draw * 101 + truth;
+                                  std::uint64_t draw) {
+  const std::uint64_t seed = question.options.seed * 1000003 + draw * 101 + truth;
   std::vector<SimulatedRun> out;
   try {
     const Machine machine = question.draws[truth].draw(seed);
@@ -104,22 +129,17 @@ double calibrated_chance(double expected) {
   return kGuesses + (1 - kGuesses - kLapses) * expected;
 }
 
-double chance_beyond(double sigmas) {
-  return normal_below(sigmas - diagnosis::limits::kDeclaredSigmas);
-}
-
-Evidence weigh_draw(const DiagnosedTraces& diagnosed, const OpenQuestion& question, const Experiment& experiment,
-                    std::size_t truth, std::uint64_t draw, const PlanOptions& options) {
+Evidence weigh_draw(const OpenQuestion& question, const Experiment& experiment, std::size_t truth, std::uint64_t draw) {
   Evidence out;
   if (experiment.is_by_hand()) {
     out.known = chance_by_hand(question, truth, experiment);
     return out;
   }
-  const std::vector<SimulatedRun> runs = runs_of(question, experiment, truth, draw, options);
+  const std::vector<SimulatedRun> runs = runs_of(question, experiment, truth, draw);
   out.simulated = !runs.empty();
   if (!out.simulated) return out;
-  const diagnosis::Ruling ruling = diagnosis::rule_between(with_runs(diagnosed, runs), question.law, question.beside,
-                                                           question.asked, options.instruments);
+  const diagnosis::Ruling ruling = diagnosis::rule_between(with_runs(question, runs), question.law, question.beside,
+                                                           question.asked, question.options.instruments);
   const auto least = std::min_element(ruling.effects.begin(), ruling.effects.end(),
                                       [](const auto& a, const auto& b) { return a.p_value < b.p_value; });
   const diagnosis::Ruling::OfEffect& own = question.without(truth) ? *least : ruling.effects[truth];
@@ -137,16 +157,18 @@ double chance_to_name(const OpenQuestion& question, std::size_t truth, const std
                       const Lengthening& lengthening) {
   using namespace diagnosis;
   std::vector<Evidence> seen;
+  double ruled_out = 0;
   for (const Evidence& draw : draws) {
     if (draw.known >= 0) return draw.known;
-    if (draw.simulated) seen.push_back(draw);
+    if (!draw.simulated) continue;
+    seen.push_back(draw);
+    ruled_out += draw.ruled_out ? 1 : 0;
   }
   if (seen.empty()) return 0;
-  const double simulated = static_cast<double>(seen.size()) / static_cast<double>(draws.size());
+  const auto count = static_cast<double>(seen.size());
+  const double simulated = count / static_cast<double>(draws.size());
   if (question.without(truth)) return simulated * (1 - chance_of_p(seen, limits::kChanceOfPossible, 1));
-  const auto ruled_out = std::count_if(seen.begin(), seen.end(), [](const Evidence& draw) { return draw.ruled_out; });
-  double chance = (1 - static_cast<double>(ruled_out) / static_cast<double>(seen.size())) *
-                  chance_of_p(seen, Limits{}.p_value, lengthening.of_cycles);
+  const double chance = (1 - ruled_out / count) * chance_of_p(seen, Limits{}.p_value, lengthening.of_cycles);
   std::vector<double> of_rivals;
   for (std::size_t rival = 0; rival < question.asked.size(); ++rival) {
     const double now = question.behind[rival] - question.behind[truth];
@@ -155,41 +177,21 @@ double chance_to_name(const OpenQuestion& question, std::size_t truth, const std
   return simulated * std::min(chance, chance_of_all(of_rivals));
 }
 
-std::optional<Answer> diagnose_simulated(const DiagnosedTraces& diagnosed, const OpenQuestion& question,
-                                         const Experiment& experiment, std::size_t truth, std::uint64_t draw,
-                                         double most_cycles, const PlanOptions& options) {
-  const std::vector<SimulatedRun> runs = runs_of(question, experiment, truth, draw, options);
+std::optional<Answer> diagnose_simulated(const OpenQuestion& question, const Experiment& experiment, std::size_t truth,
+                                         std::uint64_t draw, double most_cycles) {
+  const std::vector<SimulatedRun> runs = runs_of(question, experiment, truth, draw);
   if (runs.empty()) return Answer::open;
-  const std::vector<Record> records = with_runs(diagnosed, runs);
+  const std::vector<Record> records = with_runs(question, runs);
   std::size_t cycles = 0;
   for (const Record& record : records) cycles += record.segmentation->cycles.size();
   if (static_cast<double>(cycles) > most_cycles) return std::nullopt;
+  const PlanOptions& options = question.options;
   DiagnosisOptions inner;
   inner.threads = 1;
   const std::vector<Law> laws = options.laws.empty() ? std::vector<Law>{question.law} : options.laws;
   FitOptions look = options.fit;  // which effects are named is wanted, and no figure of a rung
   look.starts = 0;
-  const Diagnosis d = diagnose(records, laws, {}, options.instruments, look, inner).diagnosis;
-  const auto rung_with = [&](const std::string& key) {
-    return std::find_if(d.ladder.begin(), d.ladder.end(), [&](const Rung& rung) {
-      const auto& others = rung.equivalent;
-      return rung.added == key || std::find(others.begin(), others.end(), key) != others.end();
-    });
-  };
-  std::vector<std::string> asked;
-  for (const Effect& effect : question.asked) asked.push_back(describe(effect).key);
-  const bool any =
-      std::any_of(asked.begin(), asked.end(), [&](const std::string& key) { return rung_with(key) != d.ladder.end(); });
-  if (question.without(truth)) {
-    const bool possible = std::any_of(d.effects.begin(), d.effects.end(), [&](const EffectFinding& finding) {
-      const bool is_asked = std::find(asked.begin(), asked.end(), finding.key) != asked.end();
-      return is_asked && finding.status == EffectStatus::possible;
-    });
-    return any ? Answer::wrong : possible ? Answer::open : Answer::named;
-  }
-  const auto held = rung_with(asked[truth]);
-  if (held == d.ladder.end()) return any ? Answer::wrong : Answer::open;
-  return held->added == asked[truth] && held->equivalent.empty() ? Answer::named : Answer::open;
+  return answer_of(diagnose(records, laws, {}, options.instruments, look, inner).diagnosis, question, truth);
 }
 
 }  // namespace tribofit

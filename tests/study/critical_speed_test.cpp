@@ -8,7 +8,7 @@
 #include "machines.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/study/settled.hpp"
-#include "tribofit/study/uncertainty.hpp"
+#include "tribofit/study/identified.hpp"
 #include "tribofit/study/vary.hpp"
 
 namespace tribofit {

@@ -13,16 +13,14 @@
 #include "fit/model_residuals.hpp"
 #include "study/limits.hpp"
 #include "study/open_question.hpp"
-#include "study/plausible_draws.hpp"
 #include "study/simulated_run.hpp"
-#include "study/weighing.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/oscillator/presets.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/statistics/quantiles.hpp"
-#include "tribofit/study/uncertainty.hpp"
+#include "tribofit/study/identified.hpp"
 
 namespace tribofit {
 namespace {
@@ -245,7 +243,7 @@ TEST(Plan, MachinesAreDrawnThatDescribeTheRecord) {
   const Record record{&trace.motion, &trace.segmentation};
   const FrictionModel model(ExponentialLaw{}, {make_effect("run-in")});
   const Fit fit = fit_model(model, {&record, 1}, observations_for(model, {&record, 1}), {}, {});
-  const RigFit rig = rig_beside(fit, trace.motion, trace.segmentation);
+  const RigFit rig = rig_beside(fit, trace.motion, trace.segmentation, {});
   const IdentifiedMachine known = identified_machine(fit, rig, trace.motion, trace.segmentation);
   ASSERT_EQ(known.reason, "");
   EXPECT_LT(known.scatter.wander, 0.4);  // break-away scatters by itself: that all of it falls is run-in

@@ -9,7 +9,6 @@
 #include "tribofit/report/study.hpp"
 #include "tribofit/study/map.hpp"
 #include "tribofit/study/response.hpp"
-#include "tribofit/study/sensitivity.hpp"
 #include "tribofit/study/sweep.hpp"
 
 namespace tribofit {

@@ -7,10 +7,9 @@
 #include "tribofit/fit/fit.hpp"
 #include "tribofit/report/json.hpp"
 #include "tribofit/report/report.hpp"
+#include "tribofit/study/identified.hpp"
 #include "tribofit/study/map.hpp"
 #include "tribofit/study/response.hpp"
-#include "tribofit/study/sensitivity.hpp"
-#include "tribofit/study/studied_machine.hpp"
 #include "tribofit/study/sweep.hpp"
 
 namespace tribofit {

@@ -18,6 +18,8 @@ struct FingerprintAxis {
 struct FingerprintCloud {
   std::string name = {};
   std::vector<double> x = {}, y = {};
+
+  void add(double at, double value) { x.push_back(at), y.push_back(value); }
 };
 
 /// Where the absence of an effect shows: a simulated record of the published 15 mm test, without noise, seen over the

@@ -2,12 +2,13 @@
 
 #include <functional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "tribofit/study/critical_speed.hpp"
+#include "tribofit/study/identified.hpp"
 #include "tribofit/study/settled.hpp"
-#include "tribofit/study/uncertainty.hpp"
 #include "tribofit/study/vary.hpp"
 
 namespace tribofit {
@@ -48,5 +49,33 @@ struct SpeedStudyOptions {
 /// Measures over speed, critical speed both ways, and what the uncertainty of the machine makes of them (draws of all
 /// its numbers, each studied alike). Throws as settle() and critical_speed() do.
 SpeedStudy study_speed(const Machine& machine, const SpeedStudyOptions& options = {});
+
+/// How measures answer to one variable.
+struct Sensitivity {
+  Variable variable;
+  double base = 0;               ///< value of the machine [SI]
+  std::vector<double> values;    ///< swept [SI]
+  std::vector<Settled> settled;  ///< at those
+  /// d ln measure/d ln variable at the machine, by central differences of one per cent, in the order of measures();
+  /// NaN where the regime changes within them or the measure is zero.
+  std::vector<double> elasticities;
+};
+
+struct SensitivityOptions {
+  /// Empty: stiffness, mass, damping, load, velocity, ratio, and the other parameters of the law and of every effect.
+  std::vector<std::string> variables;
+  double factor = 2;       ///< swept from 1/factor to factor times the machine's own value
+  std::size_t count = 21;  ///< in equal ratios
+  SettleOptions settle = {};
+  int threads = 0;
+  std::function<void(double)> progress = {};  ///< called with the part done, from one thread at a time
+};
+
+/// Sweeps of every variable. Throws as settle() does, and for an unknown variable.
+std::vector<Sensitivity> study_sensitivity(const Machine& machine, const SensitivityOptions& options = {});
+
+/// Indices of `all` by the size of the elasticity of a measure (an index in measures()), the largest first; those
+/// without one last.
+std::vector<std::size_t> ranked(const std::vector<Sensitivity>& all, std::size_t measure);
 
 }  // namespace tribofit

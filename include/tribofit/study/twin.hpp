@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,6 +31,19 @@ struct TwinMeasure {
 };
 
 /// A measured motion beside those that law and rig predict.
+///
+/// Each law is simulated on the rig beside it at the record's own conditions (speed of the disc, load, length, rate,
+/// noise, break-away scatter); the simulated records are taken through the same segmentation, and compared. Each
+/// simulation has numbers of its own, drawn from the covariances of law and rig, and a scatter of its own; it is a
+/// record that the fit could have been made to. What the record owes to the levels at which it happened to break away
+/// is no error of the twin: the simulated value is the one at the mean break-away of the record, by a straight line
+/// through the simulations, and its standard error that of one more record beside this line (Student's t with the
+/// number of simulations less two). To it comes what the measured mean is known less well than those of the
+/// simulations. Of break-away itself the mean of the simulations is compared. A difference beyond three is not chance.
+///
+/// The phase portrait is the mean slip in the plane of displacement and velocity; its `value` and `difference` are the
+/// root mean square over the loop of the differences in standard errors, its measured value is zero.
+/// Cost: about 1 us a sample and simulation.
 struct Twin {
   std::vector<std::string> columns;    ///< names of the laws
   std::vector<TwinMeasure> measures;   ///< the last is the phase portrait
@@ -70,21 +82,9 @@ struct TwinOptions {
   std::function<void(std::string_view, double)> progress = {};  ///< what is being done and the part done
 };
 
-/// Simulates each law on the rig beside it (`rigs`, as many as `fits`) at the record's own conditions (speed of the
-/// disc, load, length, rate, noise, break-away scatter), takes the simulated records through the same segmentation, and
-/// compares.
-///
-/// Each simulation has numbers of its own, drawn from the covariances of law and rig, and a scatter of its own; it is a
-/// record that the fit could have been made to. What the record owes to the levels at which it happened to break away
-/// is no error of the twin: the simulated value is the one at the mean break-away of the record, by a straight line
-/// through the simulations, and its standard error that of one more record beside this line (Student's t with the
-/// number of simulations less two). To it comes what the measured mean is known less well than those of the
-/// simulations. Of break-away itself the mean of the simulations is compared. A difference beyond three is not chance.
-///
-/// The phase portrait is the mean slip in the plane of displacement and velocity; its `value` and `difference` are the
-/// root mean square over the loop of the differences in standard errors, its measured value is zero.
-/// Cost: about 1 us a sample and simulation.
-Twin compare_twins(const Motion& motion, const Segmentation& segmentation, std::span<const Fit> fits,
-                   std::span<const RigFit> rigs, const TwinOptions& options = {});
+/// Fits the bare laws of the options to a trace that was prepared, then the laws with the effects of friction among
+/// them; identifies the rig beside the best of each, and simulates their twins. Without stick-slip, a law or a rig the
+/// trace is refused, and `out.twin.reason` says why.
+void add_twins(const IdentifyOptions& options, TwinOptions more, TwinIdentification& out);
 
 }  // namespace tribofit
