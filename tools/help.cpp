@@ -1,9 +1,5 @@
 #include <algorithm>
-#include <memory>
-#include <string>
-#include <vector>
 
-#include "console.hpp"
 #include "help_texts.hpp"
 #include "verbs.hpp"
 
