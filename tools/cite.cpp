@@ -1,12 +1,18 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
+#include "console.hpp"
+#include "exit_status.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/friction/laws/all.hpp"
 #include "tribofit/friction/state_evolution.hpp"
 #include "tribofit/ingest/conditions.hpp"
+#include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/output/digits.hpp"
 #include "tribofit/version.hpp"

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -30,25 +31,15 @@ class Option {
 
   Option required() const;
   Option describe(const char* help) const;
+  /// The help states the value it has unless typed.
+  Option show_default() const;
   Option one_of(const std::vector<std::string>& words) const;
-  /// T: int or double.
-  template <class T>
-  Option range(T least, T most) const;
+  Option range(double least, double most) const;
+  Option range(int least, int most) const;
 
  private:
   CLI::Option* parsed_;
 };
-
-/// How a number is typed.
-struct TypedNumber {
-  tribofit::Quantity quantity = tribofit::Quantity::dimensionless;
-  const char* otherwise = "";  ///< what holds unless it is typed, which the help shows; empty: nothing
-  const char* bare_unit = "";  ///< of a number without one; empty: SI
-  bool is_positive = false;    ///< it must be greater than zero
-};
-constexpr TypedNumber positive(tribofit::Quantity quantity, const char* otherwise = "", const char* bare_unit = "") {
-  return {quantity, otherwise, bare_unit, true};
-}
 
 /// A command line of `identify`, or of one of its verbs: options, help, and what it runs.
 ///
@@ -67,11 +58,14 @@ class Command {
   /// The verb has kinds of its own; `advice` is the usage error where none is named.
   void requires_kind(const char* advice) const;
 
-  /// T: text, a number, or a list of texts, one value each time it is given.
-  template <class T>
-  Option add_option(const std::string& names, T& value, const std::string& help) const;
+  Option add_option(const std::string& names, std::string& value, const std::string& help) const;
+  /// One value each time it is given; it may be given several times.
+  Option add_option(const std::string& names, std::vector<std::string>& values, const std::string& help) const;
   /// Names that stand for themselves, as many as there are.
   Option add_names(const std::string& name, std::vector<std::string>& values, const std::string& help) const;
+  Option add_option(const std::string& names, int& value, const std::string& help) const;
+  Option add_option(const std::string& names, std::size_t& value, const std::string& help) const;
+  Option add_option(const std::string& names, double& value, const std::string& help) const;
   /// names: "--trim,!--no-trim" has a negative form.
   Option add_flag(const std::string& names, bool& value, const std::string& help) const;
   Option option(const char* name) const;
@@ -79,19 +73,12 @@ class Command {
   /// What reads a text: it throws UsageError or tribofit::InputError.
   using Read = std::function<void(const std::string&)>;
   /// An option whose text is read when all are parsed, before the verb runs, in the order in which they were added.
-  /// otherwise: what is read unless it is typed, which the help shows.
-  Option add_read(const std::string& names, Read read, const std::string& help,
-                  const std::string& otherwise = "") const;
+  Option add_read(const std::string& names, Read read, const std::string& help) const;
   /// The same of one that may be given several times.
   Option add_each(const std::string& names, Read read, const std::string& help) const;
-  /// A number with a unit, in SI. name: as messages have it.
-  Option add_number(const std::string& name, const TypedNumber& how, std::function<void(double)> take,
-                    const std::string& help) const;
-  template <class T>
-  Option add_number(const std::string& name, const TypedNumber& how, T& value, const std::string& help) const {
-    return add_number(
-        name, how, [&value](double number) { value = number; }, help);
-  }
+  /// A number with a unit, greater than zero, in SI. name: as messages have it.
+  Option add_quantity(const std::string& name, tribofit::Quantity quantity, std::function<void(double)> take,
+                      const std::string& help) const;
   /// One of a few words, each of which stands for a value.
   template <class T>
   Option add_choice(const std::string& name, T& value, const std::vector<std::pair<std::string, T>>& choices,
@@ -120,14 +107,14 @@ class Command {
   };
   std::vector<Typed> typed() const;
 
-  /// Of this command the empty text, then each verb and the verbs of each: "study speed".
-  std::vector<std::string> verbs() const;
-  /// What may be typed where these words stand before it: words of an option or verbs; as an option, if that has begun.
-  struct Offer {
-    std::vector<std::string> words;
-    bool is_open = false;  ///< a file may stand there, too
+  /// What can be typed after a verb.
+  struct Typable {
+    std::vector<std::string> verb;                               ///< {"study", "speed"}; empty: the command itself
+    std::vector<std::string> verbs = {}, options = {};           ///< its own verbs; "--radius", ...
+    std::map<std::string, std::vector<std::string>> words = {};  ///< that an option takes, where they are few
   };
-  Offer offer_after(const std::vector<std::string>& before, bool is_option) const;
+  /// Of this command, then of each verb and the verbs of each.
+  std::vector<Typable> typables() const;
 
   /// The options as typed that shape the analysis, for the next command; where `wanted` is given, those of them.
   std::vector<std::string> own_options(const std::function<bool(const Typed&)>& wanted = {}) const;

@@ -138,10 +138,6 @@ void ProgressLine::show(std::string_view words, double part) {
   shown_ = true;
 }
 
-std::size_t letters_in(std::string_view text) {
-  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
-}
-
 std::size_t prose_width() {
   constexpr std::size_t kNarrowest = 80, kWidest = 120;
   return std::clamp(terminal_width(), kNarrowest, kWidest);
@@ -154,7 +150,8 @@ std::string folded(const std::string& sentence, std::size_t indent) {
   for (std::size_t at = 0; at < sentence.size();) {
     const std::size_t end = std::min(sentence.find(' ', at), sentence.size());
     const std::string_view word = std::string_view(sentence).substr(at, end - at);
-    const std::size_t length = letters_in(word);
+    const auto length = static_cast<std::size_t>(std::count_if(
+        word.begin(), word.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
     if (column > indent && column + 1 + length > width) {
       out += "\n" + std::string(indent, ' ');
       column = indent;

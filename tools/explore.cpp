@@ -6,13 +6,19 @@
 #include <chrono>
 #include <condition_variable>
 #include <csignal>
+#include <memory>
 #include <mutex>
 #include <stdexcept>
+#include <string>
 #include <system_error>
 #include <thread>
 #include <utility>
+#include <vector>
 
+#include "console.hpp"
+#include "inputs.hpp"
 #include "memory.hpp"
+#include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/text_of_file.hpp"
 #include "tribofit/workbench/server.hpp"
 #include "verbs.hpp"
@@ -40,6 +46,7 @@ void add_options(const Command& app, ExploreSettings& s) {
   add_input_options(app, s);
   add_model_options(app, s);
   add_parameter_options(app, s);
+  add_selection_options(app, s);
   const Command server = app.in(section::kServer);
   server.add_option("--session", s.session, "Go on with a session that the page saved (the trace is named in it)");
   server.add_option("--port", s.port, "Port of 127.0.0.1 to listen on (default: a free one)").range(1, 65535);
@@ -216,7 +223,7 @@ ExitStatus run_explore(ExploreSettings& s, const std::vector<std::string>& given
     take_over(earlier, s);
     arguments = earlier.arguments;
   }
-  set_memory(Memory::of_two_heaps);
+  keep_memory();
   WorkbenchSession session(options_for(s, arguments));
   if (!saved.empty()) session.load(saved, s.session);
   allow_many_connections();

@@ -1,5 +1,9 @@
 #include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
 
+#include "console.hpp"
 #include "help_texts.hpp"
 #include "verbs.hpp"
 

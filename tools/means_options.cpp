@@ -77,8 +77,10 @@ void add_means_options(const Command& app, MeansOptions& m) {
   add("--loads", Quantity::force, means.loads, "Normal forces, 20N..100N");
   add("--springs", Quantity::stiffness, means.springs, "Other springs, by their stiffness, 5N/mm,20N/mm");
   add("--rates", Quantity::frequency, means.rates, "Rates of sampling, 50kHz");
-  in.add_number("--minutes", positive(Quantity::time, "", "min"), means.longest,
-                "Longest time of all runs of an experiment together (default 10)");
+  in.add_read(
+      "--minutes",
+      [&](const std::string& text) { means.longest = positive_value(text, Quantity::time, "--minutes", "min"); },
+      "Longest time of all runs of an experiment together (default 10)");
   in.add_read(
       "--pauses",
       [&](const std::string& text) {

@@ -1,11 +1,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "batch.hpp"
+#include "console.hpp"
+#include "results.hpp"
 #include "summary.hpp"
 #include "tribofit/campaign/run_result.hpp"
+#include "tribofit/ingest/input_error.hpp"
 #include "tribofit/report/campaign.hpp"
+#include "tribofit/report/terminal.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;

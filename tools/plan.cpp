@@ -1,6 +1,16 @@
 #include "tribofit/study/plan.hpp"
 
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "console.hpp"
+#include "diagnosed_runs.hpp"
+#include "inputs.hpp"
 #include "means_options.hpp"
+#include "results.hpp"
+#include "tribofit/pipeline.hpp"
 #include "tribofit/report/plan.hpp"
 #include "verbs.hpp"
 
@@ -71,6 +81,8 @@ void add_plan(const Command& app) {
                   "Simulate no more runs after this time (10s, 2min) and report what is known");
   add_model_options(verb, *settings);
   add_parameter_options(verb, *settings);
-  add_output_options(verb, *settings);
+  add_selection_options(verb, *settings);
+  add_result_options(verb, *settings);
+  add_report_option(verb, *settings);
   verb.on_run([settings, means, verb] { return run_plan(*settings, *means, verb.own_options()); });
 }

@@ -44,8 +44,7 @@ void check_figures(const Settings& s) {
   }
   if (!can_write_pictures(picture_format(s))) {
     throw UsageError("--format " + name_of(picture_format(s)) +
-                     ": this build leaves it out; use --format svg, or build where librsvg is "
-                     "installed (scripts/setup figures)");
+                     " needs rsvg-convert; use --format svg, or install it (apt install librsvg2-bin)");
   }
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +8,8 @@
 #include "tribofit/output/whole_file.hpp"
 #include "tribofit/report/pictures.hpp"
 #include "tribofit/report/report.hpp"
+
+#include <optional>
 
 /// What is drawn of a report where that was asked for (--report, --figures), on the disc but without names until
 /// commit().

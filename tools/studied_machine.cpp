@@ -15,7 +15,6 @@
 #include "tribofit/pipeline.hpp"
 #include "tribofit/report/terminal.hpp"
 #include "tribofit/study/identified.hpp"
-#include "typed_values.hpp"
 
 using namespace tribofit;
 
@@ -35,12 +34,12 @@ void refuse_effects_without_size(const std::vector<std::string>& effects) {
 
 StudiedMachine given(const Settings& settings, MachineRequest typed) {
   refuse_effects_without_size(typed.effects);
-  if (!settings.radius.empty()) typed.radius = positive_value(settings.radius, Quantity::length, "--radius", "mm");
+  if (!settings.radius.empty()) typed.radius = settings.radius;
   typed.speed = settings.speed;
-  const Condition& load = settings.identify.read.conditions.load;
-  if (load.known()) typed.load = load.value;
   StudiedMachine out;
   out.machine = machine_from(typed).machine;
+  const Condition& load = settings.identify.read.conditions.load;
+  if (load.known()) out.machine.load = load.value;
   out.source = "given values";
   return out;
 }
@@ -53,11 +52,12 @@ void set_exact(std::vector<double>& covariance, std::size_t k) {
 
 void forget_typed(const MachineRequest& typed, const FrictionModel& model, MachineCovariance& covariance) {
   for (std::size_t k = 0; k < model.base_count(); ++k) {
-    if (typed.law_parameters.contains(model.parameters()[k].parameter.name)) set_exact(covariance.friction, k);
+    const auto found = typed.law_parameters.find(model.parameters()[k].parameter.name);
+    if (found != typed.law_parameters.end() && !found->second.empty()) set_exact(covariance.friction, k);
   }
-  if (typed.mass) set_exact(covariance.rig, 0);
-  if (typed.damping || typed.damping_ratio) set_exact(covariance.rig, 1);
-  if (typed.stiffness) set_exact(covariance.rig, 2);
+  if (!typed.mass.empty()) set_exact(covariance.rig, 0);
+  if (!typed.damping.empty() || !typed.damping_ratio.empty()) set_exact(covariance.rig, 1);
+  if (!typed.stiffness.empty()) set_exact(covariance.rig, 2);
 }
 
 [[noreturn]] void refuse(const Identification& trace, const std::string& reason) {
@@ -72,7 +72,7 @@ Settings settings_of_trace(Settings settings, const MachineRequest& typed) {
   }
   settings.effects = typed.effects;
   settings.formulas = typed.formulas;
-  if (typed.law_is_typed) settings.identify.laws = {typed.law};
+  if (!typed.law.empty()) settings.identify.laws = {law_named(typed.law)};
   settings.protocol = to_string(Protocol::joint);
   return settings;
 }
@@ -96,9 +96,11 @@ void require_machine(const Identification& trace) {
 RigFit rig_of(const Fit& fit, const Identification& trace, const Instruments& instruments,
               const MachineRequest& typed) {
   RigFit rig = rig_beside(fit, trace.motion, trace.segmentation, instruments);
-  if (rig.per_unit_load && (typed.mass || typed.stiffness || typed.damping))
+  const bool any_typed = !typed.mass.empty() || !typed.stiffness.empty() || !typed.damping.empty();
+  if (rig.per_unit_load && any_typed)
     throw InputError("no normal force is known, and a mass, stiffness or damping was given", "state --load");
-  if (!rig.determined && typed.mass && typed.stiffness && (typed.damping || typed.damping_ratio)) {
+  const bool damping_typed = !typed.damping.empty() || !typed.damping_ratio.empty();
+  if (!rig.determined && !typed.mass.empty() && !typed.stiffness.empty() && damping_typed) {
     rig.determined = true;
     rig.mass.value = rig.stiffness.value = rig.damping.value = 1;
     rig.covariance = {};

@@ -61,6 +61,11 @@ double positive_value(std::string_view text, Quantity quantity, const std::strin
                    fmt::format("give {} such as {}", with_article(to_string(quantity)), example_of(quantity)));
 }
 
+double given_or(const std::string& text, Quantity quantity, const char* option, std::string_view bare_unit,
+                double otherwise) {
+  return text.empty() ? otherwise : stated_value(text, quantity, option, bare_unit);
+}
+
 std::string unit_of(std::string_view text) {
   const std::size_t at = text.find_first_not_of("+-.0123456789eE ");
   return at == std::string_view::npos ? "" : std::string(text.substr(at));

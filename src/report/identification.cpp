@@ -93,7 +93,8 @@ void draw(const Identification& result, const ReportOptions& options, TraceSecti
   const std::vector<const Fit*> curves = drawn_curves(models, result.fits);
   const DrawnTrace drawn(result, models, curves, "t1", 1, 0, options.threads);
   sections.add_models(drawn);
-  if (!options.leave_out_cycles) sections.add_cycles(drawn);
+  if (options.cycles == nullptr) sections.add_cycles(drawn);
+  if (options.cycles != nullptr) sections.cycles = *options.cycles;
 }
 
 /// What the motion shows, as the text has it; a page has the same at its head.

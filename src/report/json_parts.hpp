@@ -30,12 +30,9 @@ Json rig_json(const RigFit& rig);
 Json identification_json(const Identification& result, const JsonOptions& options);
 /// The whole result of a diagnosis.
 Json diagnosed_json(const DiagnosedTraces& result, const JsonOptions& options);
-/// A report as the page takes it: its members under their own names, those that have their default value left out,
-/// numbers with no more digits than are drawn.
+/// A report, or a section of one, as the page takes it: members under their own names, numbers with no more digits than
+/// are drawn.
 Json report_json(const Report& report);
-/// All but its sections, one of those, and an item of one.
-Json report_json_without_sections(const Report& report);
 Json section_json(const ReportSection& section);
-Json item_json(const ReportItem& item);
 
 }  // namespace tribofit

@@ -203,13 +203,8 @@ Chart motion_chart(const Twin& twin, const std::vector<DrawnMotion>& motions, co
       .x = {.quantity = "time since break-away", .unit = "s", .digits = 7},
       .height = 640};
   std::size_t k = 0;
-  for (const DrawnMotion& motion : motions) {
-    add_over_time(motion,
-                  {{{.quantity = "velocity v_{b}", .unit = "mm/s"}, &DrawnMotion::velocity, kMillimetre},
-                   {{.quantity = unit == "N" ? "friction" : "mu", .unit = unit}, &DrawnMotion::friction, 1},
-                   {{.quantity = "displacement", .unit = "mm"}, &DrawnMotion::displacement, kMillimetre}},
-                  stroke_for(k++), chart);
-  }
+  const ChartAxis friction{unit == "N" ? "friction" : "mu", unit};
+  for (const DrawnMotion& motion : motions) add_over_time(motion, friction, stroke_for(k++), chart);
   shade_sticks({"measured", twin.measured}, chart);
   if (twin.measured.size() > 0) chart.marks.push_back(disc_mark(twin.measured.disc_velocity));
   return chart;

@@ -1,11 +1,11 @@
 #include "answers.hpp"
 
+#include <array>
 #include <utility>
-#include <variant>
 
 #include "choice_json.hpp"
+#include "report/charts/styles.hpp"
 #include "report/numbers.hpp"
-#include "tribofit/execution/parallel.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/ingest/units.hpp"
 
@@ -45,21 +45,8 @@ Json catalogue_json(const Motion& motion) {
   return list;
 }
 
-std::string_view name_of(WorkbenchDiagnosis::State state) {
-  switch (state) {
-    case WorkbenchDiagnosis::State::none:
-      return "none";
-    case WorkbenchDiagnosis::State::running:
-      return "running";
-    case WorkbenchDiagnosis::State::done:
-      return "done";
-    case WorkbenchDiagnosis::State::cancelled:
-      return "cancelled";
-    case WorkbenchDiagnosis::State::failed:
-      break;
-  }
-  return "failed";
-}
+/// In the order of WorkbenchDiagnosis::State.
+constexpr std::array<const char*, 5> kStates = {"none", "running", "done", "cancelled", "failed"};
 
 }  // namespace
 
@@ -112,78 +99,9 @@ Json begin_json(const WorkbenchSession& session) {
           {"rungs", rungs_json(session)}};
 }
 
-std::string text_of_answer(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-namespace {
-
-/// Sections as text; their items, which are long, are written side by side.
-std::vector<std::string> section_texts(const std::vector<const ReportSection*>& sections) {
-  std::vector<const ReportItem*> items;
-  for (const ReportSection* section : sections) {
-    for (const ReportItem& item : section->items) items.push_back(&item);
-  }
-  std::vector<std::string> written(items.size());
-  run_tasks(items.size(), 0, [&](std::size_t k) { written[k] = text_of_answer(item_json(*items[k])); });
-  std::vector<std::string> out;
-  auto next = written.begin();
-  for (const ReportSection* section : sections) {
-    std::string text = text_of_answer(object("id", section->id, "title", section->title));
-    text.pop_back();  // the closing brace
-    text += ",\"items\":[";
-    for (const auto end = next + static_cast<std::ptrdiff_t>(section->items.size()); next != end; ++next) {
-      if (text.back() != '[') text += ',';
-      text += *next;
-    }
-    out.push_back(text + "]}");
-  }
-  return out;
-}
-
-}  // namespace
-
-std::optional<std::string> WrittenSections::text_of(const std::shared_ptr<const ReportSection>& section) {
-  const std::lock_guard lock(mutex_);
-  for (const auto& [known, text] : kept_) {
-    if (known == section) return text;
-  }
-  return std::nullopt;
-}
-
-void WrittenSections::keep(const std::shared_ptr<const ReportSection>& section, const std::string& text) {
-  constexpr std::size_t kMostKept = 4;
-  const std::lock_guard lock(mutex_);
-  std::erase_if(kept_,
-                [&](const auto& one) { return one.first == section; });  // another page may have asked for it meanwhile
-  if (kept_.size() >= kMostKept) kept_.erase(kept_.begin());
-  kept_.emplace_back(section, text);
-}
-
-std::string picture_text(const WorkbenchPicture& picture, double turn, const WorkbenchSession& session,
-                         WrittenSections& written) {
-  const std::optional<std::string> known = written.text_of(picture.cycles);
-  std::vector<const ReportSection*> sections;
-  for (const ReportSection& section : picture.report.sections) sections.push_back(&section);
-  if (!known) sections.push_back(picture.cycles.get());
-  std::vector<std::string> texts = section_texts(sections);
-  if (known) {
-    texts.push_back(*known);
-  } else {
-    written.keep(picture.cycles, texts.back());
-  }
-  if (picture.cycles->items.empty()) {
-    texts.pop_back();
-  } else if (texts.size() > 1) {  // the cycles stand before what was run, which ends the report
-    std::swap(texts.back(), texts[texts.size() - 2]);
-  }
-  const Json others = {
-      {"rung", rung_json(picture.rung, session.motion(), true)}, {"rungs", rungs_json(session)}, {"turn", turn}};
-  std::string out = text_of_answer(others), shown = text_of_answer(report_json_without_sections(picture.report));
-  out.pop_back(), shown.pop_back();  // the closing braces
-  out += ",\"report\":" + shown + ",\"sections\":[";
-  for (std::size_t k = 0; k < texts.size(); ++k) out += (k > 0 ? "," : "") + texts[k];
-  return out + "]}}";
+Json picture_json(const WorkbenchPicture& picture, double turn, const WorkbenchSession& session) {
+  return object("rung", rung_json(picture.rung, session.motion(), true), "rungs", rungs_json(session), "turn", turn,
+                "report", report_json(picture.report));
 }
 
 Json curve_json(const Curve& curve) {
@@ -192,7 +110,7 @@ Json curve_json(const Curve& curve) {
 }
 
 Json diagnosis_json(const WorkbenchDiagnosis& diagnosis) {
-  Json json = {{"state", name_of(diagnosis.state)},
+  Json json = {{"state", style_of(diagnosis.state, kStates)},
                {"doing", diagnosis.doing},
                {"part", diagnosis.part},
                {"sentence", diagnosis.sentence},

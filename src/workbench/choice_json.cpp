@@ -47,11 +47,6 @@ std::vector<std::string> texts(const Json& json, const char* key, std::size_t mo
   return out;
 }
 
-Law law_from(const Json& json) {
-  const std::string name = json.contains("law") && json["law"].is_string() ? json["law"].get<std::string>() : "";
-  return make_law(name);
-}
-
 /// The shown unit of a parameter in SI; nothing for a parameter that the model does not have.
 std::optional<double> unit_of(const FrictionModel& model, const std::string& name) {
   for (const FrictionModel::Slot& slot : model.parameters()) {
@@ -130,20 +125,12 @@ double in_units(double si, double unit) {
 }
 
 /// A choice as it is whatever the order of the clicks that led to it.
-Json in_order(const WorkbenchChoice& choice) {
-  WorkbenchChoice sorted = choice;
-  std::sort(sorted.effects.begin(), sorted.effects.end());
-  std::sort(sorted.formulas.begin(), sorted.formulas.end());
-  const auto by_name = [](const GivenParameter& a, const GivenParameter& b) { return a.name < b.name; };
-  std::sort(sorted.given.begin(), sorted.given.end(), by_name);
-  const auto by_time = [](const auto& a, const auto& b) { return std::pair(a.from, a.to) < std::pair(b.from, b.to); };
-  std::sort(sorted.selection.excluded.begin(), sorted.selection.excluded.end(), by_time);
-  return choice_json(sorted);
-}
-
-/// Shortest text that reads back as the same number.
-std::string exact(double value) {
-  return fmt::format("{}", value);
+Json in_order(WorkbenchChoice choice) {
+  std::ranges::sort(choice.effects);
+  std::ranges::sort(choice.formulas);
+  std::ranges::sort(choice.given, {}, &GivenParameter::name);
+  std::ranges::sort(choice.selection.excluded, {}, [](const auto& one) { return std::pair(one.from, one.to); });
+  return choice_json(choice);
 }
 
 }  // namespace
@@ -184,10 +171,14 @@ Json choice_json(const WorkbenchChoice& choice) {
       json["bounds"][known.name] = {in_units(known.bounds->lower, unit), in_units(known.bounds->upper, unit)};
     }
   }
-  json["cycles"] = nullptr;
-  if (choice.selection.cycles) json["cycles"] = {choice.selection.cycles->first, choice.selection.cycles->last};
-  json["excluded"] = Json::array();
-  for (const auto& stretch : choice.selection.excluded) json["excluded"].push_back({stretch.from, stretch.to});
+  json.update(selection_json(choice.selection));
+  return json;
+}
+
+Json selection_json(const Selection& selection) {
+  Json json = {{"cycles", nullptr}};
+  if (selection.cycles) json["cycles"] = {selection.cycles->first, selection.cycles->last};
+  json["excluded"] = list_of(selection.excluded, [](const auto& one) { return Json::array({one.from, one.to}); });
   return json;
 }
 
@@ -202,7 +193,8 @@ std::vector<std::pair<std::string, double>> values_from(const Json& json) {
 WorkbenchChoice choice_from(const Json& json) {
   if (!json.is_object()) refuse("this is not a choice", "send law, effects and formulas");
   WorkbenchChoice choice;
-  choice.law = law_from(json);
+  const auto law = json.find("law");
+  choice.law = make_law(law != json.end() && law->is_string() ? law->get<std::string>() : "");
   choice.effects = texts(json, "effects", kMostEffects);
   choice.formulas = texts(json, "formulas", kMostEffects);
   choice.given = given_from(json, model_of(choice));
@@ -222,16 +214,15 @@ std::vector<std::string> arguments_of(const WorkbenchChoice& choice) {
   for (const GivenParameter& known : choice.given) {
     const std::optional<double> unit = unit_of(model, known.name);
     if (!unit) continue;  // of another law: the command would be refused
-    if (known.start) add("--start", known.name + "=" + exact(in_units(*known.start, *unit)));
+    if (known.start) add("--start", fmt::format("{}={}", known.name, in_units(*known.start, *unit)));
     if (known.bounds) {
-      add("--bounds", known.name + "=" + exact(in_units(known.bounds->lower, *unit)) + ".." +
-                          exact(in_units(known.bounds->upper, *unit)));
+      add("--bounds", fmt::format("{}={}..{}", known.name, in_units(known.bounds->lower, *unit),
+                                  in_units(known.bounds->upper, *unit)));
     }
   }
   const Selection& selection = choice.selection;
   if (selection.cycles) add("--cycles", fmt::format("{}..{}", selection.cycles->first, selection.cycles->last));
-  for (const auto& stretch : selection.excluded)
-    add("--exclude", exact(stretch.from) + "s.." + exact(stretch.to) + "s");
+  for (const auto& [from, to] : selection.excluded) add("--exclude", fmt::format("{}s..{}s", from, to));
   return out;
 }
 

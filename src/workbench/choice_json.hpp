@@ -23,6 +23,8 @@ FrictionModel model_of(const WorkbenchChoice& choice);
 std::vector<Effect> effects_of(const WorkbenchChoice& choice);
 
 Json choice_json(const WorkbenchChoice& choice);
+/// Its "cycles" and "excluded": the same for the same part of a record.
+Json selection_json(const Selection& selection);
 /// {"mu_s": 0.5} as names and values. Throws InputError for values that are not numbers.
 std::vector<std::pair<std::string, double>> values_from(const Json& json);
 /// Throws InputError for what is not a choice: unknown names and values that are not numbers.

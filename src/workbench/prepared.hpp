@@ -1,44 +1,63 @@
 #pragma once
 
-#include <memory>
+#include <algorithm>
 #include <mutex>
-#include <optional>
+#include <utility>
 #include <vector>
 
+#include "choice_json.hpp"
 #include "tribofit/fit/identification.hpp"
 #include "tribofit/report/report.hpp"
 
 namespace tribofit::workbench {
 
-/// Whether two selections are of the same part of a record.
-bool same_part(const Selection& a, const Selection& b);
-
 /// A trace with one set of corrections of its motion. Its motion does not change and is shared by every fit; what is
 /// drawn of it is drawn one at a time.
 class Prepared {
  public:
-  explicit Prepared(Identification prepared);
+  explicit Prepared(Identification prepared) : drawn_(std::move(prepared)), whole_(drawn_) {}
 
   const Motion& motion() const { return drawn_.motion; }
 
-  /// The part that is selected, as before any fit, with its noise; its cycles are drawn meanwhile.
-  TracePart part(const Selection& selection, int threads);
+  /// The part that is selected, as before any fit, with its noise.
+  TracePart part(const Selection& selection, int threads) {
+    TracePart out = whole_;
+    exclude(selection, drawn_.motion, out.segmentation);
+    const auto said = out.segmentation.notes.begin() + static_cast<std::ptrdiff_t>(whole_.segmentation.notes.size());
+    out.notes.insert(out.notes.end(), said, out.segmentation.notes.end());
+    const std::lock_guard lock(looking_);
+    static_cast<TracePart&>(drawn_) = out;
+    out.noise = seen(selection, threads).noise;
+    return out;
+  }
 
-  /// The report of a part, but for its section of the cycles, which stands beside it.
-  Report draw(TracePart part, const Selection& selection, ReportOptions options,
-              std::shared_ptr<const ReportSection>& cycles);
+  /// The report of a part for a page.
+  Report draw(TracePart part, const Selection& selection, ReportOptions options) {
+    const std::lock_guard lock(looking_);
+    static_cast<TracePart&>(drawn_) = std::move(part);
+    options.cycles = &seen(selection, options.threads).cycles;
+    Report report = report_of(drawn_, options);
+    report.keep_for(Medium::page);
+    return report;
+  }
 
  private:
   /// What no model changes of a part that was looked at.
   struct Seen {
-    Selection selection;
-    std::optional<RecordNoise> noise;
-    std::shared_ptr<const ReportSection> cycles;
+    Json selection;
+    RecordNoise noise;
+    ReportSection cycles;
   };
-
-  Seen& seen(const Selection& selection);
-  /// The section of the cycles of the part in drawn_.
-  std::shared_ptr<const ReportSection> drawn_cycles() const;
+  /// Of the part in drawn_.
+  const Seen& seen(const Selection& selection, int threads) {
+    constexpr std::size_t kMostKept = 4;  // pages look at a few parts of a record
+    const Json part = selection_json(selection);
+    const auto known = std::ranges::find(kept_, part, &Seen::selection);
+    if (known != kept_.end()) return *known;
+    if (kept_.size() >= kMostKept) kept_.erase(kept_.begin());
+    kept_.push_back({part, noise_of(drawn_.motion, drawn_.segmentation, threads), cycles_section(drawn_)});
+    return kept_.back();
+  }
 
   Identification drawn_;  ///< its part is the one that was drawn last
   const TracePart whole_;

@@ -3,19 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <exception>
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <new>
+#include <random>
 #include <utility>
 
 #include "answers.hpp"
 #include "choice_json.hpp"
 #include "connections.hpp"
-#include "guard.hpp"
-#include "served_page.hpp"
 #include "tribofit/execution/stop.hpp"
+#include "tribofit/ingest/input_error.hpp"
 #include "tribofit/report/page.hpp"
 
 namespace tribofit {
@@ -26,23 +28,26 @@ namespace {
 
 constexpr const char* kLoopback = "127.0.0.1";
 constexpr const char* kJson = "application/json";
-/// What the library does not compress: on loopback that takes a second and saves nothing.
-constexpr const char* kUncompressed = "application/json; charset=utf-8";
 constexpr std::size_t kLargestBody = 256 * 1024, kMostPages = 256, kLongestName = 64;
 enum Status {
-  kDone = 200,
   kForbidden = 403,
-  kUnknown = 404,
-  kWrongMethod = 405,
+  kUnknown,
+  kWrongMethod,
   kTooLarge = 413,
   kWrongType = 415,
   kUnfit = 422,
   kBroken = 500
 };
 
-void answer(httplib::Response& response, const Json& json, int status = kDone) {
+void answer(httplib::Response& response, const Json& json, int status = 200) {
   response.status = status;
-  response.set_content(text_of_answer(json), kUncompressed);
+  // With a charset the library does not compress it: on loopback that takes a second and saves nothing.
+  response.set_content(line_of(json), "application/json; charset=utf-8");
+}
+
+void say_that_it_cannot_be(httplib::Response& response, const std::string& why, const std::string& suggestion,
+                           int status = kUnfit) {
+  answer(response, problem_json("this cannot be done", why, suggestion), status);
 }
 
 void refuse(httplib::Response& response, int status, const std::string& why, const std::string& suggestion) {
@@ -53,6 +58,49 @@ void refuse(httplib::Response& response, int status, const std::string& why, con
 std::string only(const httplib::Request& request, const char* header) {
   // Two of a kind are a trick: no browser sends them.
   return request.get_header_value_count(header) > 1 ? "(several)" : request.get_header_value(header);
+}
+
+/// 128 bits from the system's generator, as 32 hexadecimal digits.
+std::string fresh_token() {
+  std::random_device device;  // getrandom() or its like
+  std::string token;
+  for (int k = 0; k < 4; ++k) token += fmt::format("{:08x}", device());
+  return token;
+}
+
+/// Whether two texts are the same, in a time that does not tell where they differ.
+bool same_secret(std::string_view a, std::string_view b) {
+  unsigned difference = a.size() == b.size() ? 0u : 1u;
+  for (std::size_t k = 0; k < b.size(); ++k) {
+    const char other = k < a.size() ? a[k] : '\0';
+    difference |= static_cast<unsigned>(static_cast<unsigned char>(other) ^ static_cast<unsigned char>(b[k]));
+  }
+  return difference == 0;
+}
+
+/// Why a request must not be answered, by what it says of where it comes from; empty: it may.
+std::string refusal(const httplib::Request& request, int port) {
+  const std::array<std::string, 2> own = {fmt::format("127.0.0.1:{}", port), fmt::format("localhost:{}", port)};
+  const std::string host = only(request, "Host"), origin = only(request, "Origin"),
+                    site = only(request, "Sec-Fetch-Site");  // empty: it does not say
+  if (host != own[0] && host != own[1]) return "it is addressed to another host";
+  if (!origin.empty() && origin != "http://" + own[0] && origin != "http://" + own[1]) {
+    return "it comes from another page";
+  }
+  return site.empty() || site == "same-origin" || site == "none" ? "" : "it comes from another site";
+}
+
+/// The page, which asks its own server, as a report asks nobody. policy: becomes what its answer carries.
+std::string served_page(const std::string& trace, std::string& policy) {
+  constexpr std::string_view kNothing = "default-src 'none'", kFrom = "Content-Security-Policy\" content=\"";
+  Report empty;
+  empty.kind = "workbench";
+  empty.title = std::filesystem::path(trace).filename().string();
+  std::string html = report_page(empty);
+  html.insert(html.find(kNothing) + kNothing.size(), "; connect-src 'self'");
+  const std::size_t begin = html.find(kFrom) + kFrom.size();
+  policy = html.substr(begin, html.find('"', begin) - begin) + "; frame-ancestors 'none'";
+  return html;
 }
 
 }  // namespace
@@ -66,8 +114,7 @@ struct WorkbenchServer::State {
   LoopbackServer http;
   std::string token = fresh_token();
   int port = 0;
-  ServedPage page;
-  WrittenSections written;
+  std::string page;
   std::atomic<bool> stopping{false};
   std::mutex mutex;
   std::map<std::string, double> newest;  ///< turn of each page
@@ -98,8 +145,7 @@ struct WorkbenchServer::State {
 
 /// Whether a request comes from a page of this server and can be read.
 bool WorkbenchServer::State::admits(const httplib::Request& request, httplib::Response& response) const {
-  const Caller caller = {only(request, "Host"), only(request, "Origin"), only(request, "Sec-Fetch-Site")};
-  if (const std::string why = refusal(caller, port); !why.empty()) {
+  if (const std::string why = refusal(request, port); !why.empty()) {
     refuse(response, kForbidden, why, "open the address that `identify explore` prints");
     return false;
   }
@@ -130,14 +176,13 @@ void WorkbenchServer::State::post(const char* path, Do&& what) {
     try {
       what(parsed(request.body, "the request"), response);
     } catch (const InputError& error) {
-      answer(response, problem_json("this cannot be done", error.problem(), error.advice()), kUnfit);
+      say_that_it_cannot_be(response, error.problem(), error.advice());
     } catch (const Stopped&) {
       answer(response, {{"superseded", true}});
     } catch (const Json::exception&) {
-      answer(response, problem_json("this cannot be done", "the request is incomplete", "use the page"), kUnfit);
+      say_that_it_cannot_be(response, "the request is incomplete", "use the page");
     } catch (const std::bad_alloc&) {
-      answer(response, problem_json("this cannot be done", "there is not enough memory", "choose a part of the record"),
-             kBroken);
+      say_that_it_cannot_be(response, "there is not enough memory", "choose a part of the record", kBroken);
     }
   });
 }
@@ -152,7 +197,7 @@ void WorkbenchServer::State::show(const Json& asked, httplib::Response& response
   const std::shared_ptr<WorkbenchSession> now = session();
   const WorkbenchPicture picture = now->show(
       choice, detail, [&] { return !stopping && is_newest(name, turn); }, !asked.value("passing", false));
-  response.set_content(picture_text(picture, turn, *now, written), kUncompressed);
+  answer(response, picture_json(picture, turn, *now));
 }
 
 /// The trace is read and moved anew: every rung was of other friction and speeds, so none is kept.
@@ -175,21 +220,21 @@ void WorkbenchServer::State::change_conditions(const Json& asked, httplib::Respo
 }
 
 void WorkbenchServer::State::add_handlers() {
+  const auto get = [this](const char* path, Json (*what)(const WorkbenchSession&)) {
+    http.Get(path, [this, what](const httplib::Request&, httplib::Response& response) {
+      answer(response, what(*session()));
+    });
+  };
   http.Get("/", [this](const httplib::Request&, httplib::Response& response) {
-    // Given piece by piece for the same reason.
-    response.set_content_provider(page.html.size(), "text/html; charset=utf-8",
+    // Given piece by piece it is not compressed either.
+    response.set_content_provider(page.size(), "text/html; charset=utf-8",
                                   [this](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-                                    return sink.write(page.html.data() + offset, length);
+                                    return sink.write(page.data() + offset, length);
                                   });
   });
-  http.Get("/api/begin",
-           [this](const httplib::Request&, httplib::Response& response) { answer(response, begin_json(*session())); });
-  http.Get("/api/session", [this](const httplib::Request&, httplib::Response& response) {
-    response.set_content(session()->save(), kUncompressed);
-  });
-  http.Get("/api/diagnosis", [this](const httplib::Request&, httplib::Response& response) {
-    answer(response, diagnosis_json(session()->diagnosis()));
-  });
+  get("/api/begin", begin_json);
+  get("/api/session", [](const WorkbenchSession& now) { return Json::parse(now.save()); });
+  get("/api/diagnosis", [](const WorkbenchSession& now) { return diagnosis_json(now.diagnosis()); });
   post("/api/show", [this](const Json& asked, httplib::Response& response) { show(asked, response); });
   post("/api/curve", [this](const Json& asked, httplib::Response& response) {
     answer(response, curve_json(session()->curve(choice_from(asked.at("choice")), values_from(asked.at("values")))));
@@ -212,10 +257,11 @@ void WorkbenchServer::State::add_handlers() {
 WorkbenchServer::WorkbenchServer(WorkbenchSession& session, int port, Reread reread)
     : state_(std::make_unique<State>(session, std::move(reread))) {
   State& s = *state_;
-  s.page = served_page(session.record().path);
+  std::string policy;
+  s.page = served_page(session.record().path, policy);
   s.http.set_payload_max_length(kLargestBody);
   s.http.set_socket_options([](socket_t) {});  // by default it would share its port
-  s.http.set_default_headers({{"Content-Security-Policy", s.page.policy},
+  s.http.set_default_headers({{"Content-Security-Policy", policy},
                               {"X-Content-Type-Options", "nosniff"},
                               {"X-Frame-Options", "DENY"},
                               {"Referrer-Policy", "no-referrer"},
@@ -235,7 +281,7 @@ WorkbenchServer::WorkbenchServer(WorkbenchSession& session, int port, Reread rer
     answer(response, problem_json("the request is refused", why, "use the page"), status);
   });
   s.http.set_exception_handler([](const httplib::Request&, httplib::Response& response, std::exception_ptr) {
-    answer(response, problem_json("this cannot be done", "something failed", "choose another model"), kBroken);
+    say_that_it_cannot_be(response, "something failed", "choose another model", kBroken);
   });
   s.add_handlers();
   if (port == 0) {

@@ -3,18 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <thread>
+#include <semaphore>
 #include <utility>
 
-#include "by_hand.hpp"
 #include "choice_json.hpp"
 #include "diagnosis_run.hpp"
+#include "fit/assessment.hpp"
 #include "prepared.hpp"
+#include "report/numbers.hpp"
 #include "report/report_parts.hpp"
 #include "tribofit/execution/stop.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -59,39 +59,31 @@ const WorkbenchRung* beside(const WorkbenchRung& rung, const std::vector<Workben
   for (const WorkbenchRung& other : rungs) {
     const bool bare = other.choice.law == rung.choice.law && other.choice.effects.empty() &&
                       other.choice.formulas.empty() && other.choice.given.empty();
-    if (bare && same_part(other.choice.selection, rung.choice.selection)) return &other;
+    if (bare && selection_json(other.choice.selection) == selection_json(rung.choice.selection)) return &other;
   }
   return nullptr;
 }
 
-/// The lock, once it is free; who waits for it can be stopped.
-std::unique_lock<std::mutex> turn_in(std::mutex& mutex) {
-  std::unique_lock lock(mutex, std::try_to_lock);
-  while (!lock) {
-    stop_point();
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    lock.try_lock();
-  }
-  stop_point();
-  return lock;
+/// Waits until it is there; who waits can be stopped. try_for: waits so long, and says whether it is.
+template <class TryFor>
+void wait_for(TryFor&& try_for) {
+  do stop_point();
+  while (!try_for(std::chrono::milliseconds(5)));
 }
 
-/// A fit among a few at the same time; who waits can be stopped.
+/// A fit among a few at the same time.
 class FitPlace {
  public:
-  explicit FitPlace(std::atomic<int>& under_way) : under_way_(under_way) {
-    while (++under_way_ > kMostFits) {
-      --under_way_;
-      stop_point();
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
+  using Places = std::counting_semaphore<kMostFits>;
+  explicit FitPlace(Places& places) : places_(places) {
+    wait_for([&](auto time) { return places.try_acquire_for(time); });
   }
-  ~FitPlace() { --under_way_; }
+  ~FitPlace() { places_.release(); }
   FitPlace(const FitPlace&) = delete;
   FitPlace& operator=(const FitPlace&) = delete;
 
  private:
-  std::atomic<int>& under_way_;
+  Places& places_;
 };
 
 }  // namespace
@@ -101,8 +93,8 @@ struct WorkbenchSession::State {
   std::shared_ptr<Prepared> uncorrected;  ///< the whole trace; set once, so that it needs no lock
   /// With corrections of its motion: those that were asked for last, the very last at the end.
   std::vector<std::pair<std::vector<std::string>, std::shared_ptr<Prepared>>> corrected;
-  std::mutex correcting;  ///< guards them
-  std::atomic<int> fits_under_way{0};
+  std::timed_mutex correcting;  ///< guards them
+  FitPlace::Places places{kMostFits};
   WorkbenchRecord record;
   std::vector<WorkbenchRung> rungs;
   mutable std::mutex visited;  ///< guards the rungs and options.begin
@@ -119,11 +111,20 @@ struct WorkbenchSession::State {
     return out;
   }
 
+  /// What a command line says of a choice.
+  ReportOptions terminal(const std::vector<std::string>& verb, const WorkbenchChoice& choice) const {
+    ReportOptions out;
+    out.arguments = joined(joined(verb, options.arguments), arguments_of(choice));
+    out.instruments_declared = options.instruments_declared;
+    return out;
+  }
+
   /// The trace with the corrections that the effects ask for.
   std::shared_ptr<Prepared> prepared(const IdentifyOptions& identify) {
     std::vector<std::string> asked = corrections_of(identify.effects);
     if (asked.empty()) return uncorrected;
-    const std::unique_lock lock = turn_in(correcting);
+    std::unique_lock lock(correcting, std::defer_lock);
+    wait_for([&](auto time) { return lock.try_lock_for(time); });
     const auto known =
         std::find_if(corrected.begin(), corrected.end(), [&](const auto& one) { return one.first == asked; });
     if (known != corrected.end()) {
@@ -239,7 +240,7 @@ WorkbenchPicture WorkbenchSession::show(const WorkbenchChoice& choice, FitDetail
                                         const std::function<bool()>& wanted, bool keep) {
   State& s = *state_;
   const StopScope scope(wanted ? [&wanted] { return !wanted(); } : std::function<bool()>());
-  const FitPlace place(s.fits_under_way);
+  const FitPlace place(s.places);
   const IdentifyOptions identify = s.identify_options(choice, detail);
   const std::optional<WorkbenchRung> known = s.visited_rung(choice);
   const std::shared_ptr<Prepared> prepared = s.prepared(identify);
@@ -259,19 +260,33 @@ WorkbenchPicture WorkbenchSession::show(const WorkbenchChoice& choice, FitDetail
     if (const WorkbenchRung* other = beside(picture.rung, s.rungs)) part.fits.push_back(other->fit);
   }
   stop_point();
-  ReportOptions report;
-  report.arguments = s.options.arguments;
-  const std::vector<std::string> own = arguments_of(picture.rung.choice);
-  report.arguments.insert(report.arguments.end(), own.begin(), own.end());
-  report.instruments_declared = s.options.instruments_declared;
+  ReportOptions report = s.terminal({}, picture.rung.choice);
   report.threads = identify.threads;
-  picture.report = prepared->draw(std::move(part), choice.selection, std::move(report), picture.cycles);
+  picture.report = prepared->draw(std::move(part), choice.selection, std::move(report));
   return picture;
 }
 
 Curve WorkbenchSession::curve(const WorkbenchChoice& choice,
                               const std::vector<std::pair<std::string, double>>& values) const {
-  return curve_by_hand(rungs(), choice, values);
+  constexpr std::size_t kPoints = 121;
+  std::optional<Fit> fit;
+  for (WorkbenchRung& rung : rungs()) {
+    // What is dragged is a start or a bound of the choice; the fit it is drawn from is of the same model.
+    const bool alike = rung.choice.law == choice.law && rung.choice.effects == choice.effects &&
+                       rung.choice.formulas == choice.formulas;
+    if (alike) fit = std::move(rung.fit);
+  }
+  if (!fit) throw InputError("this model was not fitted yet", "choose the model first");
+  std::fill(fit->covariance.begin(), fit->covariance.end(), 0.0);  // no band about values that were set by hand
+  for (const auto& [name, value] : values) {
+    const auto known = std::find_if(fit->parameters.begin(), fit->parameters.end(),
+                                    [&](const FitParameter& p) { return full_name(p) == name; });
+    if (known == fit->parameters.end()) {
+      throw InputError("the model has no parameter '" + name + "'", "choose the model first");
+    }
+    known->value = value * known->parameter.si;
+  }
+  return curve_of(*fit, kPoints);
 }
 
 std::vector<WorkbenchRung> WorkbenchSession::rungs() const {
@@ -280,42 +295,28 @@ std::vector<WorkbenchRung> WorkbenchSession::rungs() const {
 }
 
 std::string WorkbenchSession::command_of(const WorkbenchChoice& choice) const {
-  ReportOptions terminal;
-  terminal.arguments = state_->options.arguments;
-  const std::vector<std::string> own = arguments_of(choice);
-  terminal.arguments.insert(terminal.arguments.end(), own.begin(), own.end());
-  return command_line(terminal, {}, state_->options.input.path);
+  return command_line(state_->terminal({}, choice), {}, state_->options.input.path);
 }
 
 bool WorkbenchSession::begin_diagnosis(const WorkbenchChoice& choice) {
   State& s = *state_;
-  IdentifyOptions identify = s.options.identify;
-  identify.selection = choice.selection;
-  WorkbenchChoice candidates;
-  candidates.formulas = choice.formulas;
-  identify.effects = effects_of(candidates);
-  for (const std::string& name : choice.effects) {  // corrections of the motion stay as they are
-    if (const Effect effect = make_effect(name); is_kinematic(effect)) identify.effects.push_back(effect);
-  }
-  ReportOptions terminal;
-  terminal.arguments = {"diagnose"};
-  const auto add = [&](const std::vector<std::string>& more) {
-    terminal.arguments.insert(terminal.arguments.end(), more.begin(), more.end());
-  };
-  add(s.options.arguments);
   WorkbenchChoice part;
   part.formulas = choice.formulas;
   part.selection = choice.selection;
-  for (const Effect& effect : identify.effects) {
-    if (is_kinematic(effect)) part.effects.push_back(describe(effect).spelled());
+  IdentifyOptions identify = s.options.identify;
+  identify.selection = choice.selection;
+  identify.effects = effects_of(part);
+  for (const Effect& effect : effects_of(choice)) {  // corrections of the motion stay as they are
+    if (!is_kinematic(effect)) continue;
+    identify.effects.push_back(effect);
+    part.effects.push_back(describe(effect).spelled());
   }
-  std::vector<std::string> own = arguments_of(part);
-  own.erase(own.begin(), own.begin() + 2);  // the law: both climb
-  add(own);
+  ReportOptions terminal = s.terminal({"diagnose"}, part);
+  const auto law = std::find(terminal.arguments.begin(), terminal.arguments.end(), "--law");
+  terminal.arguments.erase(law, law + 2);  // both climb
   const std::string command = command_line(terminal, {}, s.options.input.path);
   terminal.arguments.erase(terminal.arguments.begin());  // a plan says its own verb
   terminal.inputs = {s.options.input.path};
-  terminal.instruments_declared = s.options.instruments_declared;
   return s.diagnosis.begin({s.options.input, identify, part, terminal}, command);
 }
 

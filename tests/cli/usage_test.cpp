@@ -99,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& param_info) { return param_info.param.name; });
 
 TEST(Usage, SomeFormatsOfFiguresNeedLibrsvg) {
-  if (tribofit::can_write_pictures(tribofit::PictureFormat::pdf)) GTEST_SKIP() << "this build has librsvg";
+  if (tribofit::can_write_pictures(tribofit::PictureFormat::pdf)) GTEST_SKIP() << "rsvg-convert is installed";
   const Workshop shop;
   shop.write("a.csv", good_trace());
   const Outcome outcome = shop.identify("--radius 15mm --figures out --format pdf a.csv");

@@ -121,7 +121,7 @@ async function checkLegend(page) {
 /** A band goes along its upper edge and back along the lower one, and leaves out where it has a gap. */
 async function checkBand(page) {
   const bands = await page.evaluate(() => {
-    const line = { name: "a", colour: "blue", x: [0, 1, 2, 3, 4], low: [1, 2, null, 4, 5], high: [2, 3, null, 5, 6] };
+    const line = { name: "a", stroke: { colour: "blue" }, x: [0, 1, 2, 3, 4], low: [1, 2, null, 4, 5], high: [2, 3, null, 5, 6] };
     const unknown = { ...line, low: line.x.map(() => null) };
     return [line, unknown].map((one) => bandOf(one, {})).map(({ x, y }) => x.map((at, k) => [at, y[k]]));
   });

@@ -180,7 +180,7 @@ async function chartsUpToDate(address) {
   const charts = () => page.evaluate(() => [...chartItems.values()].map(({ chart, shown: as, plot }) => {
     const values = (trace) => JSON.stringify([trace.x, trace.y, trace.z]);
     const drawn = as !== "", shown = drawn ? new Set(plot.data.map(values)) : null;
-    const described = [...(chart.lines || []).filter((line) => line.y), ...(chart.map ? [chart.map] : [])];
+    const described = [...chart.lines.filter((line) => line.y.length), ...(chart.map ? [chart.map] : [])];
     return { id: chart.id, drawn, right: drawn && described.every((line) => shown.has(values(line))) };
   }));
   const drawnOf = (list) => list.filter((chart) => chart.drawn).map((chart) => chart.id);

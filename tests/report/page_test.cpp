@@ -95,9 +95,9 @@ TEST_F(Page, AChartIsAsItWasDescribed) {
   report.title = "x";
   report.sections = {{"s", "S", {chart}}};
   const json line = data_of(report_page(report))["sections"][0]["items"][0]["lines"][0];
-  EXPECT_EQ(line["colour"], "red");
-  EXPECT_EQ(line["dash"], "dot");
-  EXPECT_EQ(line["symbol"], "square");
+  EXPECT_EQ(line["stroke"]["colour"], "red");
+  EXPECT_EQ(line["stroke"]["dash"], "dot");
+  EXPECT_EQ(line["stroke"]["symbol"], "square");
   EXPECT_EQ(line["x"], json({0, 1, 2}));
   EXPECT_EQ(line["y"], json({1, nullptr, 0.12346}));
 }

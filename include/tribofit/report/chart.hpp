@@ -27,6 +27,8 @@ struct Stroke {
   double width = 1.6;  ///< [CSS pixels]
   double size = 6;     ///< of the symbol [CSS pixels]
   bool joined = true;  ///< false: symbols only
+
+  bool has_symbols() const { return symbol != Symbol::none || !joined; }
 };
 
 inline constexpr double kFromData = std::numeric_limits<double>::quiet_NaN();
@@ -49,8 +51,7 @@ struct ChartLine {
   Stroke stroke = {};
   std::vector<double> low = {}, high = {};  ///< of each y: a band, or bars where `bars`
   bool bars = false;
-  bool listed = true;  ///< has an entry in the legend
-  bool shown = true;   ///< false: switched off until the legend is used, and left out of pictures
+  bool shown = true;  ///< false: switched off until the legend is used, and left out of pictures
   std::size_t panel = 0;
 
   void add(double at, double value) {
@@ -96,7 +97,8 @@ struct ChartLabel {
   std::size_t panel = 0;
 };
 
-/// A quantity over two others, in colours that rise in lightness as well, or that diverge from zero.
+/// A quantity over two others on axes that are not logarithmic, in colours that rise in lightness as well, or that
+/// diverge from zero.
 struct HeatMap {
   std::vector<double> x = {}, y = {};       ///< of the columns, of the rows
   std::vector<std::vector<double>> z = {};  ///< rows; NaN: nothing there

@@ -12,7 +12,7 @@ class WholeFolder;
 /// Charts of a report as pictures for a paper: a file of each, as wide as a column of a journal (85 mm), with a
 /// sans-serif face of 8 points and units in the titles of its axes. Their captions belong to the paper: figures.txt
 /// beside them has title and note of each. SVG keeps its texts as text; PDF (with its letters) and PNG are made of it
-/// by librsvg, which a build may leave out. What is where is the same in all of them, on every machine.
+/// by the command rsvg-convert of librsvg. What is where is the same in all of them, on every machine.
 
 enum class PictureFormat { svg, pdf, png };
 inline constexpr int kPicturePixelsPerInch = 600;  ///< of PNG
@@ -20,7 +20,7 @@ inline constexpr int kPicturePixelsPerInch = 600;  ///< of PNG
 /// "svg", "pdf", "png".
 std::string name_of(PictureFormat format);
 
-/// Whether this build writes this format: SVG always, PDF and PNG where librsvg was found.
+/// Whether this format can be written: SVG always, PDF and PNG where rsvg-convert is installed.
 bool can_write_pictures(PictureFormat format);
 
 /// Pictures of all charts of a report, made and on the disc but without their names until commit().

@@ -157,7 +157,7 @@ struct ReportOptions {
   bool instruments_declared = false;        ///< an instruments file was given
   bool csv_written = false;                 ///< the CSV folder of this result exists already
   bool report_written = false;              ///< and its page
-  bool leave_out_cycles = false;            ///< the section cycles_section() of a trace is shown from elsewhere
+  const ReportSection* cycles = nullptr;    ///< cycles_section() of the trace, where that was drawn before
   int threads = 1;                          ///< that draw a trace side by side; 0: as many as there are
   bool charts = true;                       ///< and animations, which cost more than all else
   std::vector<std::string> shared_arguments = {};  ///< of a study: the options that those of other kinds have, too

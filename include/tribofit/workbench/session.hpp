@@ -40,9 +40,7 @@ struct WorkbenchRung {
 /// What a page shows of a rung.
 struct WorkbenchPicture {
   WorkbenchRung rung;
-  Report report;  ///< without its section of the cycles
-  /// That section, which no model changes: the same object for as long as the part of the record is the same.
-  std::shared_ptr<const ReportSection> cycles;
+  Report report;
 };
 
 /// What a diagnosis asked for by a page has come to.

@@ -130,7 +130,6 @@ void add_points(const DrawnTrace& d, const std::vector<double>& values, const st
   for (const int sign : {1, -1}) {
     ChartLine& line = sign > 0 ? chart.line("measured, forwards", dots(Colour::blue, Symbol::circle), panel)
                                : chart.line("measured, backwards", dots(Colour::red, Symbol::square), panel);
-    line.listed = panel == 0;
     line.bars = !std_errors.empty();
     for (const Cycle& cycle : d.trace.segmentation.cycles) {
       if (cycle.direction != sign) continue;
@@ -221,9 +220,7 @@ Chart law_chart(const DrawnTrace& d) {
   add_residual_panel(chart);
   for (std::size_t m = 0; m < models; ++m) {  // switched with the line of the model; one band is enough to look at
     for (const auto& [branch, band] : bands[1 + m]) {
-      ChartLine& line = add_band(curve_name(*d.models[m]), band, m == 0, on_branch(m, branch, 1.3), chart);
-      line.panel = 1;
-      line.listed = false;
+      add_band(curve_name(*d.models[m]), band, m == 0, on_branch(m, branch, 1.3), chart).panel = 1;
     }
   }
   return chart;

@@ -6,16 +6,19 @@
 #include "statistics/thinning.hpp"
 
 namespace tribofit {
-namespace {
 
-std::vector<double> picked(std::span<const double> values, std::span<const std::size_t> samples, double unit) {
-  std::vector<double> out;
-  out.reserve(samples.size());
-  for (const std::size_t i : samples) out.push_back(values[i] / unit);
-  return out;
+DrawnMotion::DrawnMotion(std::string its_name, std::span<const double> times, std::span<const double> displacements,
+                         std::span<const double> velocities, std::span<const double> frictions,
+                         std::span<const std::uint8_t> stick)
+    : name(std::move(its_name)) {
+  for (const std::size_t i : drawn_samples({displacements, velocities, frictions}, stick, chart_detail.motion)) {
+    time.push_back(times[i]);
+    displacement.push_back(displacements[i] / kMillimetre);
+    velocity.push_back(velocities[i] / kMillimetre);
+    friction.push_back(frictions[i]);
+    sticks.push_back(stick[i]);
+  }
 }
-
-}  // namespace
 
 Chart portrait_plane(std::string id, std::string title, double disc_velocity) {
   return {.id = std::move(id),
@@ -27,25 +30,17 @@ Chart portrait_plane(std::string id, std::string title, double disc_velocity) {
 }
 
 void add_loop(const DrawnMotion& m, const Stroke& stroke, Chart& chart, bool closed) {
-  std::vector<std::size_t> kept = drawn_samples({m.displacement, m.velocity}, m.sticks, chart_detail.motion);
-  if (closed) kept.push_back(kept.front());
-  chart.lines.push_back(
-      {m.name, picked(m.displacement, kept, kMillimetre), picked(m.velocity, kept, kMillimetre), stroke});
+  ChartLine line{m.name, m.displacement, m.velocity, stroke};
+  if (closed) line.add(line.x.front(), line.y.front());
+  chart.lines.push_back(std::move(line));
 }
 
-void add_over_time(const DrawnMotion& m, const std::vector<MotionChannel>& channels, const Stroke& stroke,
-                   Chart& chart) {
-  if (chart.lines.empty()) {
-    chart.panels.clear();
-    for (const MotionChannel& channel : channels) chart.panels.push_back({channel.axis});
-  }
-  const std::vector<std::size_t> kept =
-      drawn_samples({m.displacement, m.velocity, m.friction}, m.sticks, chart_detail.motion);
-  const std::vector<double> time = picked(m.time, kept, 1);
-  for (std::size_t panel = 0; panel < channels.size(); ++panel) {
-    const MotionChannel& channel = channels[panel];
-    chart.lines.push_back({m.name, time, picked(m.*channel.values, kept, channel.unit), stroke});
-    chart.lines.back().panel = panel;
+void add_over_time(const DrawnMotion& m, const ChartAxis& friction, const Stroke& stroke, Chart& chart) {
+  chart.panels = {{{"velocity v_{b}", "mm/s"}}, {friction}, {{"displacement", "mm"}}};
+  std::size_t panel = 0;
+  for (const auto* values : {&m.velocity, &m.friction, &m.displacement}) {
+    chart.lines.push_back({m.name, m.time, *values, stroke});
+    chart.lines.back().panel = panel++;
   }
 }
 
@@ -56,16 +51,13 @@ void shade_sticks(const DrawnMotion& m, Chart& chart) {
   }
 }
 
-ChartMark disc_mark(double disc_velocity, std::size_t panel) {
-  return {disc_velocity / kMillimetre, false, Dash::dash_dotted, "speed of the disc", panel};
+ChartMark disc_mark(double disc_velocity) {
+  return {disc_velocity / kMillimetre, false, Dash::dash_dotted, "speed of the disc"};
 }
 
 Animation::Block animated(const DrawnMotion& m) {
-  const std::vector<std::size_t> kept = drawn_samples({m.displacement, m.friction}, m.sticks, chart_detail.motion);
-  Animation::Block block{
-      m.name, picked(m.time, kept, 1), picked(m.displacement, kept, kMillimetre), picked(m.friction, kept, 1), {}};
+  Animation::Block block{m.name, m.time, m.displacement, m.friction, {m.sticks.begin(), m.sticks.end()}};
   for (double& t : block.time) t -= m.time.front();
-  for (const std::size_t i : kept) block.sticks.push_back(m.sticks[i] != 0);
   return block;
 }
 

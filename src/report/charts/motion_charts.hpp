@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "report/charts/styles.hpp"
@@ -12,40 +13,32 @@ namespace tribofit {
 
 /// Motions of the block, simulated or measured, as portraits, over time and alive.
 
-/// A motion that is drawn; its samples live elsewhere. SI.
+/// What is drawn of a motion: a few hundred extremes of each channel, three quarters of which lie in the slips, where
+/// things happen fast.
 struct DrawnMotion {
   std::string name;
-  std::span<const double> time, displacement, velocity, friction;
-  std::span<const std::uint8_t> sticks;
+  std::vector<double> time, displacement, velocity, friction;  ///< [s], [mm], [mm/s], [1 or N]
+  std::vector<std::uint8_t> sticks;
 
+  /// Channels of a motion in SI.
+  DrawnMotion(std::string its_name, std::span<const double> times, std::span<const double> displacements,
+              std::span<const double> velocities, std::span<const double> frictions,
+              std::span<const std::uint8_t> stick);
   template <class Motion>
   DrawnMotion(std::string its_name, const Motion& m)
-      : name(std::move(its_name)),
-        time(m.time),
-        displacement(m.displacement),
-        velocity(m.velocity),
-        friction(m.friction),
-        sticks(m.sticks) {}
-  bool empty() const { return time.empty(); }
+      : DrawnMotion(std::move(its_name), m.time, m.displacement, m.velocity, m.friction, m.sticks) {}
 };
 
 /// Velocity over displacement, without a line yet; the speed of the disc [m/s] is marked.
 Chart portrait_plane(std::string id, std::string title, double disc_velocity);
-/// Adds a motion to it, of a few hundred extremes of each channel, three quarters of which lie in the slips, where
-/// things happen fast; closed: it ends where it began.
+/// Adds a motion to it; closed: it ends where it began.
 void add_loop(const DrawnMotion& motion, const Stroke& stroke, Chart& chart, bool closed = false);
 
-/// A channel over time in a panel of its own.
-struct MotionChannel {
-  ChartAxis axis;
-  std::span<const double> DrawnMotion::*values;
-  double unit;
-};
-/// Adds a motion with the same extremes to a chart over time, a line a channel; the legend names it once.
-void add_over_time(const DrawnMotion& motion, const std::vector<MotionChannel>& channels, const Stroke& stroke,
-                   Chart& chart);
+/// Adds a motion to a chart over time: velocity, friction and displacement, a panel each; the legend names it once.
+void add_over_time(const DrawnMotion& motion, const ChartAxis& friction, const Stroke& stroke, Chart& chart);
 void shade_sticks(const DrawnMotion& motion, Chart& chart);
-ChartMark disc_mark(double disc_velocity, std::size_t panel = 0);
+/// The speed of the disc in the first panel.
+ChartMark disc_mark(double disc_velocity);
 
 /// A block that is drawn in motion.
 Animation::Block animated(const DrawnMotion& motion);

@@ -1,5 +1,7 @@
 // Draws a chart as the program describes it (include/tribofit/report/chart.hpp), with its title, legend, tools and
-// numbers.
+// numbers. It is drawn for white paper; a dark screen shows it inverted (page.css).
+
+const styles = {}; // what charts are drawn with (styles.hpp)
 
 /** Text that a chart takes as text: no tags, no entities. */
 function plain(text) {
@@ -23,13 +25,14 @@ function brokenTitle(text, room = innerWidth - 90) {
   const blank = text.length > most ? text.lastIndexOf(" ", most) : -1;
   return blank > 0 ? `${text.slice(0, blank)}\n${brokenTitle(text.slice(blank + 1), room)}` : text;
 }
+const along = (axis, value) => (axis.logarithmic ? Math.log10(value) : value);
 const unitOf = (axis) => (axis.unit && axis.unit !== "1" ? ` ${axis.unit}` : "");
 
 function axisOf(axis, more = {}) {
   const layout = { title: { text: marked(brokenTitle(titleOf(axis))), standoff: 8 }, automargin: true, zeroline: false, showline: true,
     linecolor: styles.axis, gridcolor: styles.grid, ticks: "outside", tickcolor: styles.axis, exponentformat: "power",
     hoverformat: ".7~g", ticklabeloverflow: "allow", ...more }; // the margins have room for every label
-  if (axis.names) {
+  if (axis.names.length) {
     // More names than can be read take minutes to lay out; each still shows beside its point.
     const every = Math.ceil(axis.names.length / 40), shown = axis.names.map((_, k) => k).filter((k) => k % every === 0);
     Object.assign(layout, { tickvals: shown, ticktext: shown.map((k) => plain(axis.names[k])), showgrid: false,
@@ -37,11 +40,8 @@ function axisOf(axis, more = {}) {
   }
   if (axis.logarithmic) layout.type = "log";
   if (axis.from_zero) layout.rangemode = "tozero";
-  if (axis.low !== undefined && axis.high !== undefined) {
-    layout.range = axis.logarithmic ? [Math.log10(axis.low), Math.log10(axis.high)] : [axis.low, axis.high];
-  }
-  if (axis.falling && layout.range) layout.range = [...layout.range].reverse();
-  else if (axis.falling) layout.autorange = "reversed";
+  if (axis.low !== null && axis.high !== null) layout.range = [axis.low, axis.high].map((end) => along(axis, end));
+  if (axis.falling) layout.range.reverse(); // only axes of names do
   return layout;
 }
 
@@ -49,8 +49,8 @@ const nth = (letter, panel) => (panel ? `${letter}${panel + 1}` : letter);
 
 /** Hover text: both values with their units, and the line. */
 function hoverOf(chart, panel, bars) {
-  const y = chart.panels[panel || 0].axis, quantity = marked(y.quantity);
-  const x = chart.x.names ? "%{customdata}" : `${marked(chart.x.quantity)} %{x}${plain(unitOf(chart.x))}`;
+  const y = chart.panels[panel].axis, quantity = marked(y.quantity);
+  const x = chart.x.names.length ? "%{customdata}" : `${marked(chart.x.quantity)} %{x}${plain(unitOf(chart.x))}`;
   return { hovertemplate: `${x}<br>${quantity} %{y:.5g}${plain(unitOf(y))}${bars ? "<br>%{text}" : ""}` +
     "<extra>%{fullData.name}</extra>" };
 }
@@ -68,35 +68,32 @@ function bandOf(line, shape) {
     }
     begin = end + 1;
   }
-  return { ...shape, name: `${plain(line.name)}, band`, x, y, fill: "toself", fillcolor: styles.pale[line.colour] };
+  return { ...shape, name: `${plain(line.name)}, band`, x, y, fill: "toself", fillcolor: styles.pale[line.stroke.colour] };
 }
 
-function tracesOfLine(chart, line) {
+function tracesOfLine(chart, line, listed) {
+  const { dash, symbol, width, size, joined } = line.stroke, color = styles.colours[line.stroke.colour];
   const common = { type: "scatter", legendgroup: line.name, x: line.x, yaxis: nth("y", line.panel),
-    visible: line.shown === false ? "legendonly" : true };
+    visible: line.shown ? true : "legendonly" };
   const traces = [];
-  if (line.low && !line.bars) {
-    traces.push(bandOf(line, { ...common, mode: "lines", showlegend: false, hoverinfo: "skip",
-      line: { width: 0, color: styles.colours[line.colour] } }));
+  if (line.low.length && !line.bars) {
+    traces.push(bandOf(line, { ...common, mode: "lines", showlegend: listed && !line.y.length, hoverinfo: "skip",
+      line: { width: 0, color } }));
   }
-  if (!line.y) {
-    if (traces.length > 0 && line.listed !== false) traces[traces.length - 1].showlegend = true;
-    return traces;
-  }
-  const joined = line.joined !== false;
-  const trace = { ...common, mode: line.symbol ? (joined ? "lines+markers" : "markers") : "lines", name: plain(line.name),
-    y: line.y, line: { color: styles.colours[line.colour], dash: styles.dashes[line.dash], width: line.width },
-    marker: { symbol: line.symbol || "circle", size: line.size || 6, color: styles.colours[line.colour],
+  if (!line.y.length) return traces;
+  const marks = symbol !== "none";
+  const trace = { ...common, mode: marks ? (joined ? "lines+markers" : "markers") : "lines", name: plain(line.name),
+    y: line.y, line: { color, dash: styles.dashes[dash], width }, showlegend: listed,
+    marker: { symbol: marks ? symbol : "circle", size, color,
       ...(joined && !line.bars ? { maxdisplayed: styles.most_symbols } : {}) },
-    showlegend: line.listed !== false, ...hoverOf(chart, line.panel, line.bars) };
-  if (chart.x.names) trace.customdata = line.x.map((x) => plain(chart.x.names[Math.round(x)] || ""));
+    ...hoverOf(chart, line.panel, line.bars) };
+  if (chart.x.names.length) trace.customdata = line.x.map((x) => plain(chart.x.names[Math.round(x)] || ""));
   if (line.bars) {
     trace.error_y = { type: "data", symmetric: false, array: line.y.map((y, k) => line.high[k] - y),
-      arrayminus: line.y.map((y, k) => y - line.low[k]), thickness: 1.3, width: 4, color: styles.colours[line.colour] };
+      arrayminus: line.y.map((y, k) => y - line.low[k]), thickness: 1.3, width: 4, color };
     trace.text = line.y.map((_, k) => `from ${number(line.low[k], 5)} to ${number(line.high[k], 5)}`);
   }
-  traces.push(trace);
-  return traces;
+  return [...traces, trace];
 }
 
 function tracesOfBars(chart, bars) {
@@ -111,8 +108,8 @@ function tracesOfBars(chart, bars) {
 function tracesOfMap(chart) {
   const map = chart.map, x = chart.x, y = chart.panels[0].axis;
   const colours = map.diverging ? styles.diverging : styles.heat;
-  const cells = { type: "heatmap", name: plain(map.quantity), x: map.x, y: map.y, z: map.z, zmin: map.low, zmax: map.high,
-    zauto: map.low === undefined, colorscale: colours.map((colour, k) => [k / (colours.length - 1), colour]), hoverongaps: false,
+  const cells = { type: "heatmap", name: plain(map.quantity), x: map.x, y: map.y, z: map.z, zmin: map.low ?? undefined, zmax: map.high ?? undefined,
+    zauto: map.low === null, colorscale: colours.map((colour, k) => [k / (colours.length - 1), colour]), hoverongaps: false,
     opacity: map.contours ? 0.6 : 1, // lines and their numbers must be read on it
     colorbar: { title: { text: marked(titleOf(map)), side: "right" }, thickness: 12, outlinecolor: styles.axis,
       tickcolor: styles.axis, tickfont: { color: styles.text } },
@@ -125,67 +122,57 @@ function tracesOfMap(chart) {
 }
 
 function tracesOf(chart) {
-  const traces = chart.map ? tracesOfMap(chart) : [];
-  const listed = new Set(); // the legend names each once
-  for (const line of chart.lines || []) {
-    traces.push(...tracesOfLine(chart, listed.has(line.name) ? { ...line, listed: false } : line));
-    if (line.listed !== false) listed.add(line.name);
+  const traces = chart.map ? tracesOfMap(chart) : [], names = new Set(); // the legend names each once
+  for (const line of chart.lines) {
+    traces.push(...tracesOfLine(chart, line, !names.has(line.name)));
+    names.add(line.name);
   }
-  for (const bars of chart.bars || []) traces.push(tracesOfBars(chart, bars));
-  return traces;
+  return [...traces, ...chart.bars.map((bars) => tracesOfBars(chart, bars))];
 }
 
 function shapesOf(chart) {
-  const shapes = (chart.stretches || []).map((s) => ({ type: "rect", layer: "below", xref: "x", yref: "paper", x0: s.from,
-    x1: s.to, y0: 0, y1: 1, line: { width: 0 }, fillcolor: styles.shades[s.shade].fill }));
-  for (const mark of chart.marks || []) {
-    const line = { color: styles.axis, width: 1.3, dash: styles.dashes[mark.dash] };
-    shapes.push(mark.upright
-      ? { type: "line", xref: "x", yref: "paper", x0: mark.at, x1: mark.at, y0: 0, y1: 1, line }
-      : { type: "line", xref: "paper", x0: 0, x1: 1, yref: nth("y", mark.panel), y0: mark.at, y1: mark.at, line });
-  }
-  return shapes;
+  const upright = (from, to) => ({ xref: "x", yref: "paper", x0: from, x1: to, y0: 0, y1: 1 });
+  const level = (at, panel) => ({ xref: "paper", x0: 0, x1: 1, yref: nth("y", panel), y0: at, y1: at });
+  return [
+    ...chart.stretches.map((s) => ({ type: "rect", layer: "below", ...upright(s.from, s.to), line: { width: 0 },
+      fillcolor: styles.shades[s.shade].fill })),
+    ...chart.marks.map((mark) => ({ type: "line", line: { color: styles.axis, width: 1.3, dash: styles.dashes[mark.dash] },
+      ...(mark.upright ? upright(mark.at, mark.at) : level(mark.at, mark.panel)) }))];
 }
 
 function annotationsOf(chart) {
-  const log = (axis, value) => (axis.logarithmic ? Math.log10(value) : value);
-  const named = (chart.marks || []).filter((mark) => mark.text);
-  const all = (chart.lines || []).flatMap((line) => line.x).filter(Number.isFinite).map((x) => log(chart.x, x));
+  const named = chart.marks.filter((mark) => mark.text);
+  const all = chart.lines.flatMap((line) => line.x).filter(Number.isFinite).map((x) => along(chart.x, x));
   const low = Math.min(...all), high = Math.max(...all);
+  const common = { showarrow: false, font: { size: 11 }, bgcolor: styles.halo };
+  const yOf = (panel, value) => ({ yref: nth("y", panel), y: along(chart.panels[panel].axis, value) });
   // Of words at upright marks, one below the other; on a narrow screen below those at a level mark of the panel.
   let rows = innerWidth < 500 && named.some((mark) => !mark.upright && !mark.panel) ? 1.4 : 0;
   const words = named.map((mark) => {
-    const common = { showarrow: false, font: { size: 11 }, bgcolor: styles.halo, textangle: 0, xanchor: "left", align: "left" };
+    const word = { ...common, textangle: 0, xanchor: "left", align: "left" };
     if (!mark.upright) {
-      return { ...common, text: marked(mark.text), xref: "paper", x: 0, yref: nth("y", mark.panel),
-        y: log(chart.panels[mark.panel || 0].axis, mark.at), yanchor: mark.at < 0 ? "top" : "bottom" };
+      return { ...word, text: marked(mark.text), xref: "paper", x: 0, ...yOf(mark.panel, mark.at),
+        yanchor: mark.at < 0 ? "top" : "bottom" };
     }
     const text = innerWidth < 500 ? mark.text.replace(/, (?![^[]*\])| (?=\[)/g, "\n") : mark.text;
-    const right = log(chart.x, mark.at) - low > 0.6 * (high - low), yshift = -15 * rows;
+    const x = along(chart.x, mark.at), yshift = -15 * rows;
     rows += text.split("\n").length;
-    return { ...common, text: marked(text), xref: "x", x: log(chart.x, mark.at), yref: "paper", y: 1, yanchor: "top", yshift,
-      ...(right ? { xanchor: "right", align: "right" } : {}) };
+    return { ...word, text: marked(text), xref: "x", x, yref: "paper", y: 1, yanchor: "top", yshift,
+      ...(x - low > 0.6 * (high - low) ? { xanchor: "right", align: "right" } : {}) };
   });
-  for (const label of chart.labels || []) {
-    words.push({ x: log(chart.x, label.x), y: log(chart.panels[label.panel || 0].axis, label.y), yref: nth("y", label.panel),
-      text: marked(label.text), showarrow: false, yanchor: "bottom", yshift: 14, font: { size: 11 }, bgcolor: styles.halo });
-  }
-  return words;
-}
-
-/** Room for labels. The library draws a chart twice whose labels need more; but narrow screens have no more, and a page that
- * changes under the hand is up to date sooner with less. */
-function marginOf() {
-  return innerWidth < 500 || changesUnderHand ? { l: 62, r: 14, t: 10, b: 46 } : { l: 88, r: 14, t: 20, b: 56 };
+  return [...words, ...chart.labels.map((label) => ({ ...common, x: along(chart.x, label.x), ...yOf(label.panel, label.y),
+    text: marked(label.text), yanchor: "bottom", yshift: 14 }))];
 }
 
 /** Panels one above the other, with room between them. */
 function layoutOf(chart) {
   const gap = 0.06, count = chart.panels.length;
   const whole = chart.panels.reduce((sum, panel) => sum + panel.part, 0), free = 1 - gap * (count - 1);
-  const layout = { font: { family: 'system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif', size: 13,
+  // Room for labels. The library draws a chart twice whose labels need more; but narrow screens have no more, and a page
+  // that changes under the hand is up to date sooner with less.
+  const margin = innerWidth < 500 || changesUnderHand ? { l: 62, r: 14, t: 10, b: 46 } : { l: 88, r: 14, t: 20, b: 56 };
+  const layout = { margin, font: { family: 'system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif', size: 13,
     color: styles.text },
-    margin: marginOf(),
     paper_bgcolor: styles.paper, plot_bgcolor: styles.paper, hovermode: "closest",
     showlegend: false, hoverlabel: { bgcolor: styles.paper, bordercolor: styles.axis, font: { color: styles.text } },
     height: chart.height, barmode: "group", uirevision: chart.id, shapes: shapesOf(chart), annotations: annotationsOf(chart),
@@ -193,7 +180,7 @@ function layoutOf(chart) {
   let top = 1;
   chart.panels.forEach((panel, k) => {
     const height = (free * panel.part) / whole;
-    layout[`yaxis${k ? k + 1 : ""}`] = axisOf(panel.axis, { domain: [Math.max(0, top - height), top] });
+    layout[nth("yaxis", k)] = axisOf(panel.axis, { domain: [Math.max(0, top - height), top] });
     top -= height + gap;
   });
   if (matchMedia("(pointer: coarse)").matches) layout.dragmode = false; // a finger scrolls the page
@@ -202,37 +189,28 @@ function layoutOf(chart) {
 
 /** Title and names below a chart, as its width has room for them: names that do not fit stand upright. */
 function fitBelow(layout, chart, width) {
-  const longest = (axis) => letterWidth * Math.max(0, ...(axis.names || []).map((name) => plain(name).length));
+  const longest = (axis) => letterWidth * Math.max(0, ...axis.names.map((name) => plain(name).length));
   const room = width - layout.margin.l - layout.margin.r - Math.max(...chart.panels.map((panel) => longest(panel.axis)));
   layout.xaxis.title.text = marked(brokenTitle(titleOf(chart.x), room));
-  if (chart.x.names && longest(chart.x) + 12 > room / layout.xaxis.ticktext.length) layout.xaxis.tickangle = -90;
+  if (chart.x.names.length && longest(chart.x) + 12 > room / layout.xaxis.ticktext.length) layout.xaxis.tickangle = -90;
 }
 
 /** The numbers of a chart: a row a point. */
 function rowsOf(chart) {
-  const rows = [];
-  const x = (value) => (chart.x.names ? chart.x.names[Math.round(value)] : value);
-  for (const line of chart.lines || []) {
-    const quantity = unmarked(titleOf(chart.panels[line.panel || 0].axis));
-    line.x.forEach((at, k) => {
-      const y = line.y ? line.y[k] : null, low = line.low ? line.low[k] : null;
-      if (y !== null || low !== null) rows.push([line.name, x(at), quantity, y, low, line.high ? line.high[k] : null]);
-    });
-  }
-  const names = chart.panels[0].axis.names || [];
-  for (const bars of chart.bars || []) {
-    bars.values.forEach((value, k) => value !== null && rows.push([bars.name, names[k], unmarked(titleOf(chart.x)), value, null, null]));
-  }
+  const title = (axis) => unmarked(titleOf(axis)), y = chart.panels[0].axis, none = [null, null];
+  const x = (value) => (chart.x.names.length ? chart.x.names[Math.round(value)] : value);
+  const rows = chart.lines.flatMap((line) => line.x.map((at, k) =>
+    [line.name, x(at), title(chart.panels[line.panel].axis), line.y[k] ?? null, line.low[k] ?? null, line.high[k] ?? null]));
+  for (const bars of chart.bars) rows.push(...bars.values.map((value, k) => [bars.name, y.names[k], title(chart.x), value, ...none]));
   if (chart.map) {
-    const quantity = unmarked(titleOf(chart.map));
-    chart.map.z.forEach((row, i) => row.forEach((z, k) => z !== null && rows.push([
-      `${unmarked(titleOf(chart.panels[0].axis))} = ${chart.map.y[i]}`, chart.map.x[k], quantity, z, null, null])));
+    chart.map.z.forEach((row, i) => rows.push(...row.map((z, k) =>
+      [`${title(y)} = ${chart.map.y[i]}`, chart.map.x[k], title(chart.map), z, ...none])));
   }
-  for (const stretch of chart.stretches || []) rows.push([styles.shades[stretch.shade].meaning, stretch.from, "end", stretch.to, null, null]);
-  return rows;
+  rows.push(...chart.stretches.map(({ shade, from, to }) => [styles.shades[shade].meaning, from, "end", to, ...none]));
+  return rows.filter((row) => row[3] !== null || row[4] !== null);
 }
 
-const headerOf = (chart) => ["line", unmarked(chart.bars ? "name" : titleOf(chart.x)), "quantity", "value", "low", "high"];
+const headerOf = (chart) => ["line", unmarked(chart.bars.length ? "name" : titleOf(chart.x)), "quantity", "value", "low", "high"];
 
 /** What a line looks like, for the legend. */
 function swatch(trace) {
@@ -261,13 +239,11 @@ const chartItems = new Map(); // by id
 
 /** The figure of a chart; one of the same id is changed, and keeps its zoom and what its legend switched. */
 function chartFigure(chart) {
-  const item = chartItems.get(chart.id) || makeChart(chart), described = (styles.dark ? "dark" : "") + JSON.stringify(chart);
+  const item = chartItems.get(chart.id) || makeChart(chart), described = JSON.stringify(chart);
   if (item.described === described && (item.shown === described || waiting.includes(item))) return item.figure;
   item.described = described;
   item.chart = chart;
   prepare(item);
-  item.ranges = Object.fromEntries(Object.entries(item.layout).filter(([, part]) => part && part.range)
-    .map(([name, part]) => [name, [...part.range]])); // the library writes the present range into the layout
   item.title.textContent = symbols(chart.title);
   item.note.textContent = prose(chart.note);
   item.plot.style.height = `${chart.height}px`;
@@ -276,7 +252,7 @@ function chartFigure(chart) {
   return item.figure;
 }
 
-/** What the library draws of a chart, in the colours of now, with what was switched and how it is dragged. */
+/** What the library draws of a chart, with what was switched and how it is dragged. */
 function prepare(item, layout = {}) {
   item.traces = tracesOf(item.chart);
   item.layout = { ...layoutOf(item.chart), ...item.drag, ...layout };
@@ -308,8 +284,7 @@ function fillLegend(item) {
     parts.push(make("button", { type: "button", "aria-pressed": String(on), title: "Show or hide",
       onclick: (event) => toggle(item, trace.legendgroup, event.currentTarget) }, swatch(trace), symbols(trace.legendgroup)));
   }
-  const stretches = item.chart.stretches || [];
-  const keys = new Map(stretches.map(({ shade }) => [styles.shades[shade].meaning, styles.shades[shade].fill]));
+  const keys = new Map(item.chart.stretches.map(({ shade }) => [styles.shades[shade].meaning, styles.shades[shade].fill]));
   if (parts.length < 2 && !item.chart.map) parts.length = 0; // one alone needs no name
   for (const [name, fill] of keys) {
     const key = make("span", { className: "key" });
@@ -328,29 +303,21 @@ function toggle(item, group, button) {
   Plotly.restyle(item.plot, { visible: on ? true : "legendonly" }, indices);
 }
 
-const axesOf = (item, letter) => Object.keys(item.plot._fullLayout)
-  .filter((name) => new RegExp(`^${letter}axis[0-9]*$`).test(name));
+const axesOf = (chart) => ["xaxis", ...chart.panels.map((_, k) => nth("yaxis", k))];
 
 /** Zooms about the middle (factor below 1: closer) and moves by a part of the width. */
 function zoom(item, factor, move = 0) {
   bringUpToDate(item);
-  const change = {};
-  for (const name of axesOf(item, "x")) {
-    const [low, high] = item.plot._fullLayout[name].range;
-    const middle = (low + high) / 2 + move * (high - low), half = (factor * (high - low)) / 2;
-    change[`${name}.range`] = [middle - half, middle + half];
-  }
-  Plotly.relayout(item.plot, change);
+  const [low, high] = item.plot._fullLayout.xaxis.range;
+  const middle = (low + high) / 2 + move * (high - low), half = (factor * (high - low)) / 2;
+  Plotly.relayout(item.plot, { "xaxis.range": [middle - half, middle + half] });
 }
 
 function showAll(item) {
   bringUpToDate(item);
-  const change = {};
-  for (const name of [...axesOf(item, "x"), ...axesOf(item, "y")]) {
-    if (item.ranges[name]) change[`${name}.range`] = [...item.ranges[name]];
-    else change[`${name}.autorange`] = true;
-  }
-  Plotly.relayout(item.plot, change);
+  const whole = layoutOf(item.chart); // into the layout that it has the library writes the present range
+  Plotly.relayout(item.plot, Object.fromEntries(axesOf(item.chart).map((name) =>
+    (whole[name].range ? [`${name}.range`, whole[name].range] : [`${name}.autorange`, true]))));
 }
 
 /** Buttons, and the keys that do the same on a chart in focus. */

@@ -1,21 +1,19 @@
-// Charts on paper, which is white: saved as pictures, and printed with the page.
+// Charts on paper: saved as pictures, and printed with the page.
 
-/** Saves the chart as on white paper, with title and legend, wide enough for print. */
+/** Saves the chart with title and legend, wide enough for print. */
 function savePicture(item, format) {
   bringUpToDate(item);
   const height = Math.max(560, item.chart.height);
-  const [data, whole] = onPaper(() => [tracesOf(item.chart), layoutOf(item.chart)]);
-  data.forEach((trace) => { trace.visible = item.switched.get(trace.legendgroup) ?? trace.visible; });
-  for (const name of axesOf(item, "[xy]")) whole[name].range = [...item.plot._fullLayout[name].range];
-  const layout = { ...whole, showlegend: true, width: 900, height,
+  const layout = { ...layoutOf(item.chart), showlegend: true, width: 900, height,
     title: { text: plain(item.chart.title), x: 0.5 }, margin: { l: 70, r: 20, t: 60, b: 110 },
     legend: { orientation: "h", y: -0.18, yanchor: "top" } };
+  for (const name of axesOf(item.chart)) layout[name].range = [...item.plot._fullLayout[name].range];
   fitBelow(layout, item.chart, layout.width);
-  return Plotly.toImage({ data, layout }, { format, width: 900, height, scale: format === "png" ? 3 : 1 })
+  return Plotly.toImage({ data: item.traces, layout }, { format, width: 900, height, scale: format === "png" ? 3 : 1 })
     .then((url) => make("a", { href: url, download: `${item.chart.id}.${format}` }).click());
 }
 
-// On paper charts are as wide as the page and on white, and folded tables are open.
+// On paper charts are as wide as the page, and folded tables are open.
 let unfolded = [];
 const drawnItems = () => [...chartItems.values()].filter((item) => item.plot.isConnected);
 
@@ -28,7 +26,7 @@ function redraw(item, width) {
 addEventListener("beforeprint", () => {
   unfolded = [...document.querySelectorAll("details:not(.numbers):not([open])")];
   for (const details of unfolded) details.open = true;
-  onPaper(() => drawnItems().forEach((item) => redraw(item, 640)));
+  drawnItems().forEach((item) => redraw(item, 640));
 });
 addEventListener("afterprint", () => {
   for (const details of unfolded) details.open = false;

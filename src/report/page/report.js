@@ -4,7 +4,8 @@ const itemMakers = {
   text: ({ kind, text }) => (kind === "command" ? make("pre", {}, text) : kind === "heading" ? make("h3", {}, text)
     : make("p", { className: kind }, prose(text))),
   table: (item) => {
-    const whole = table(item.folded ? "" : item.caption, item.header, item.rows, item.numeric || []);
+    const whole = table(item.folded ? "" : item.caption, item.columns.map((column) => column.name), item.rows,
+      item.columns.flatMap((column, k) => (column.number ? [k] : [])));
     if (!item.folded) return whole;
     return make("details", {}, make("summary", {}, item.caption), whole);
   },
@@ -31,7 +32,7 @@ function makeItems(element, items) {
   const before = madeItems.get(element) || new Map(), now = new Map();
   const made = items.map((item, k) => {
     if (item.type === "chart") return chartFigure(item); // which knows its own
-    const described = `${k} ${styles.dark} ${JSON.stringify(item)}`;
+    const described = `${k} ${JSON.stringify(item)}`;
     now.set(described, before.get(described) || itemMakers[item.type](item));
     return now.get(described);
   });
@@ -71,14 +72,9 @@ function headerItems(report) {
     make("nav", { "aria-label": "Sections" }, make("ul", {}, ...links)), facts(report.facts)].filter((part) => part !== null);
 }
 
-let showAgain = () => {}; // in the colours of the screen as it is then
-darkScreen.addEventListener("change", () => showAgain());
-
 /** Shows a report; what stands there already is brought up to date. */
 function showReport(main, report) {
-  givenStyles = report.styles;
-  setTheme(darkScreen.matches);
-  showAgain = () => showReport(main, report);
+  Object.assign(styles, report.styles);
   document.title = `${report.title} – ${report.kind}`;
   const before = new Map([...main.querySelectorAll(":scope > section")].map((element) => [element.id, element]));
   const sections = report.sections.map((section) => {

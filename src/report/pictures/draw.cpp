@@ -1,14 +1,97 @@
-#include "report/pictures/draw.hpp"
+#include "report/pictures/picture.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/geometry/algorithms/simplify.hpp>
+#include <boost/geometry/geometries/register/linestring.hpp>
+#include <boost/geometry/geometries/register/point.hpp>
+#include <boost/geometry/strategies/strategies.hpp>
 #include <cmath>
+#include <set>
+
+BOOST_GEOMETRY_REGISTER_POINT_2D(tribofit::Point, double, boost::geometry::cs::cartesian, x, y)
+BOOST_GEOMETRY_REGISTER_LINESTRING(tribofit::Path)
 
 namespace tribofit {
+
+Path thinned_line(const Path& points, double tolerance) {
+  Path out;
+  boost::geometry::simplify(points, out, tolerance);
+  return out;
+}
+
+Path thinned_points(const Path& points, double cell) {
+  std::set<std::pair<double, double>> taken;
+  Path out;
+  for (const Point& p : points) {
+    if (taken.emplace(std::floor(p.x / cell), std::floor(p.y / cell)).second) out.push_back(p);
+  }
+  return out;
+}
+
 namespace {
 
 constexpr Paint kGrid = {kGridColour}, kMark = {kAxisColour};
+constexpr Point kGap = {kFromData, kFromData};
 
-/// Everything about one picture but the data.
+bool finite(const Point& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y);
+}
+
+/// A panel with its scales.
+struct Panel {
+  std::size_t number;
+  const Scale &x, &y;
+  const Area& area;
+
+  double across(double value) const { return area.left + x.part(value) * area.width; }
+  double up(double value) const { return area.bottom + y.part(value) * area.height; }
+  Point at(double x_value, double y_value) const { return {across(x_value), up(y_value)}; }
+  bool has(const ChartLine& line) const { return line.shown && line.panel == number; }
+};
+
+/// The points of a line that has these values, NaN where it has none.
+Path points_of(const Panel& panel, const ChartLine& line, const std::vector<double>& values) {
+  Path points;
+  for (std::size_t k = 0; k < std::min(line.x.size(), values.size()); ++k)
+    points.push_back(panel.at(line.x[k], values[k]));
+  return points;
+}
+
+/// Runs of points that are finite, without those that are not distinguishable on paper.
+std::vector<Path> thinned_runs(const Path& points) {
+  std::vector<Path> runs;
+  for (auto begin = points.begin(), end = begin; begin != points.end(); begin = end) {
+    begin = std::find_if(begin, points.end(), finite);
+    end = std::find_if_not(begin, points.end(), finite);
+    if (begin != end) runs.push_back(thinned_line({begin, end}, sizes.tolerance));
+  }
+  return runs;
+}
+
+/// Colour of a part of the map's range, 0 to 1, in steps; none where there is no value.
+std::string heat_colour(double part, std::span<const std::string_view> scale) {
+  if (!std::isfinite(part)) return "";
+  const double step = std::min(std::floor(std::clamp(part, 0.0, 1.0) * sizes.colour_steps), sizes.colour_steps - 1.0);
+  const double at = (step + 0.5) / sizes.colour_steps * static_cast<double>(scale.size() - 1), below = std::floor(at);
+  std::string out = "#";
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int from = channel_of(scale[static_cast<std::size_t>(below)], k);
+    const int to = channel_of(scale[static_cast<std::size_t>(below) + 1], k);
+    out += fmt::format("{:02x}", std::lround(from + (at - below) * (to - from)));
+  }
+  return out;
+}
+
+Pen pen_of(const Stroke& stroke) {
+  Pen pen{ink(stroke.colour), std::clamp(sizes.pixel_points * stroke.width, 0.5, 1.2)};
+  for (const double pixels : style_of(stroke.dash, kDashes).lengths) {
+    if (pixels > 0) pen.dashes.push_back(sizes.pixel_points * pixels);
+  }
+  return pen;
+}
+
 class Drawing {
  public:
   explicit Drawing(const Chart& chart)
@@ -16,17 +99,16 @@ class Drawing {
 
   std::string drawn() {
     for (std::size_t k = 0; k < layout_.panels.size(); ++k) {
-      const PanelFrame f = frame(k);
-      draw_ground(f);
-      if (k == 0 && chart_.map) draw_map(f, *chart_.map, layout_.colours);
-      if (k == 0 && !chart_.bars.empty()) draw_bars(f, chart_.bars);
-      for (const ChartLine& one : chart_.lines) {
-        if (one.shown && one.panel == k) draw_line(f, one);
+      const Panel panel{k, layout_.x, layout_.y[k], layout_.panels[k]};
+      draw_ground(panel);
+      if (k == 0 && chart_.map) draw_map(panel, *chart_.map);
+      if (k == 0 && !chart_.bars.empty()) draw_bars(panel);
+      for (const ChartLine& line : chart_.lines) {
+        if (panel.has(line)) draw_line(panel, line);
       }
-      draw_axes(f, k);
-      draw_marks(f, k);
-      if (k == 0) draw_upright_words(f);
-      draw_labels(f, k);
+      draw_axes(panel);
+      draw_marks(panel);
+      draw_words(panel);
     }
     draw_title_of_abscissa();
     for (const Key& key : layout_.keys) draw_key(key);
@@ -35,47 +117,139 @@ class Drawing {
   }
 
  private:
-  PanelFrame frame(std::size_t panel) { return {layout_.x, layout_.y[panel], layout_.panels[panel], sheet_}; }
-
   /// Shaded stretches and the grid.
-  void draw_ground(const PanelFrame& f) {
-    const double bottom = f.area.bottom, top = f.area.top(), right = f.area.right();
+  void draw_ground(const Panel& p) {
+    const double bottom = p.area.bottom, top = p.area.top(), left = p.area.left, right = p.area.right();
     for (const Stretch& stretch : chart_.stretches) {
-      const double from = std::clamp(f.across(stretch.from), f.area.left, right);
-      const double to = std::clamp(f.across(stretch.to), f.area.left, right);
+      const double from = std::clamp(p.across(stretch.from), left, right);
+      const double to = std::clamp(p.across(stretch.to), left, right);
       if (!(std::abs(to - from) > 0)) continue;  // elsewhere, or nowhere on a logarithmic axis
-      sheet_.fill(Area{from, bottom, to - from, f.area.height}, style_of(stretch.shade, kShades).paint);
+      sheet_.fill(Area{from, bottom, to - from, p.area.height}, style_of(stretch.shade, kShades).paint);
     }
     std::vector<Path> grid;
-    for (const Scale::Tic& tic : f.x.tics) grid.push_back({{f.across(tic.at), bottom}, {f.across(tic.at), top}});
-    for (const Scale::Tic& tic : f.y.tics) grid.push_back({{f.area.left, f.up(tic.at)}, {right, f.up(tic.at)}});
+    for (const Scale::Tic& tic : p.x.tics) grid.push_back({{p.across(tic.at), bottom}, {p.across(tic.at), top}});
+    for (const Scale::Tic& tic : p.y.tics) grid.push_back({{left, p.up(tic.at)}, {right, p.up(tic.at)}});
     sheet_.stroke(grid, {kGrid, 0.35});
   }
 
+  /// Cells of one row that have the same colour are one box.
+  void draw_map(const Panel& p, const HeatMap& map) {
+    const std::vector<double> x = cell_edges(map.x), y = cell_edges(map.y);
+    sheet_.begin_plot(p.area);
+    for (std::size_t r = 0; r + 1 < y.size() && r < map.z.size(); ++r) {
+      std::vector<std::string> row;
+      for (std::size_t c = 0; c < std::min(map.z[r].size(), map.x.size()); ++c)
+        row.push_back(heat_colour(layout_.colours.part(map.z[r][c]), colours_of(map)));
+      for (std::size_t c = 0, end = 0; c < row.size(); c = end) {
+        while (end < row.size() && row[end] == row[c]) ++end;
+        const Point low = p.at(x[c], y[r]), high = p.at(x[end], y[r + 1]);
+        if (!row[c].empty()) sheet_.tile({low.x, low.y, high.x - low.x, high.y - low.y}, row[c]);
+      }
+    }
+    sheet_.end_plot();
+  }
+
+  /// Beside the names of the vertical axis.
+  void draw_bars(const Panel& p) {
+    const std::size_t count = chart_.bars.size();
+    const double thickness = sizes.bars_together / static_cast<double>(count);
+    sheet_.begin_plot(p.area);
+    for (std::size_t k = 0; k < count; ++k) {
+      const ChartBars& bars = chart_.bars[k];
+      // The first of a group lies above the others.
+      const double place = static_cast<double>(p.y.falling ? k : count - 1 - k);
+      for (std::size_t i = 0; i < bars.values.size(); ++i) {
+        const double from = static_cast<double>(i) + place * thickness - sizes.bars_together / 2;
+        const Point a = p.at(0, from), b = p.at(bars.values[i], from + thickness);
+        if (!finite(b)) continue;
+        draw_box({std::min(a.x, b.x), std::min(a.y, b.y), std::abs(b.x - a.x), std::abs(b.y - a.y)}, bars);
+      }
+    }
+    sheet_.end_plot();
+  }
+
+  void draw_box(const Area& box, const ChartBars& bars) {
+    sheet_.fill(box, bars.hatched ? Paint{"#ffffff"} : ink(bars.colour));
+    std::vector<Path> hatching;  // of 45 degrees: x - y is the same all along
+    for (double c = box.left - box.height + sizes.hatching / 2; bars.hatched && c < box.right(); c += sizes.hatching) {
+      const double first = std::max(box.left, c), last = std::min(box.right(), c + box.height);
+      if (first < last) hatching.push_back({{first, box.bottom + first - c}, {last, box.bottom + last - c}});
+    }
+    sheet_.stroke(hatching, {ink(bars.colour), 0.9});
+    sheet_.stroke(box.outline(), {});
+  }
+
+  /// A line with its band, symbols and bars of errors.
+  void draw_line(const Panel& p, const ChartLine& line) {
+    const Path points = points_of(p, line, line.y);
+    sheet_.begin_plot(p.area);
+    if (!line.bars && !line.low.empty()) draw_band(p, line);
+    if (!line.y.empty() && line.stroke.joined) sheet_.stroke(thinned_runs(points), pen_of(line.stroke));
+    if (!line.y.empty() && line.bars) draw_error_bars(p, line);
+    sheet_.end_plot();
+    if (line.y.empty() || !line.stroke.has_symbols()) return;
+    Path inside, kept;
+    for (const Point& one : points) {
+      if (p.area.holds(one)) inside.push_back(one);
+    }
+    const Path apart = thinned_points(inside, sizes.symbol_cell);
+    const std::size_t every = line.stroke.joined ? 1 + apart.size() / kMostSymbols : 1;
+    for (std::size_t k = 0; k < apart.size(); k += every) kept.push_back(apart[k]);
+    draw_symbols(kept, line.stroke);
+  }
+
+  void draw_symbols(const Path& at, const Stroke& stroke) {
+    const double points = std::clamp(1.25 * sizes.pixel_points * stroke.size, 2.0, 5.5);
+    sheet_.symbols(at, stroke.symbol, points / 2 * kMillimetresPerPoint, stroke.colour);
+  }
+
+  void draw_band(const Panel& p, const ChartLine& line) {
+    Path low = points_of(p, line, line.low), high = points_of(p, line, line.high);
+    for (std::size_t k = 0; k < low.size(); ++k) {
+      if (!finite(low[k]) || !finite(high[k])) low[k] = high[k] = kGap;
+    }
+    std::vector<Path> bands = thinned_runs(low);
+    const std::vector<Path> highs = thinned_runs(high);
+    for (std::size_t k = 0; k < bands.size(); ++k) bands[k].insert(bands[k].end(), highs[k].rbegin(), highs[k].rend());
+    sheet_.fill(bands, pale(line.stroke.colour));
+  }
+
+  void draw_error_bars(const Panel& p, const ChartLine& line) {
+    const Path lows = points_of(p, line, line.low), highs = points_of(p, line, line.high);
+    std::vector<Path> bars;
+    for (std::size_t k = 0; k < lows.size(); ++k) {
+      if (!finite(lows[k]) || !finite(highs[k]) || !(highs[k].y > lows[k].y)) continue;
+      bars.push_back({lows[k], highs[k]});
+      for (const Point& end : {lows[k], highs[k]})
+        bars.push_back({{end.x - sizes.half_cap, end.y}, {end.x + sizes.half_cap, end.y}});
+    }
+    sheet_.stroke(bars, {ink(line.stroke.colour), 0.5});
+  }
+
   /// With their numbers or names, and the title of the ordinate.
-  void draw_axes(const PanelFrame& f, std::size_t panel) {
-    const double left = f.area.left, bottom = f.area.bottom;
-    std::vector<Path> lines = {{{left, f.area.top()}, {left, bottom}, {f.area.right(), bottom}}};
-    const bool lowest = panel + 1 == layout_.panels.size(), upright = layout_.upright_names;
-    for (const Scale::Tic& tic : f.x.tics) {
-      const double x = f.across(tic.at), y = bottom - sizes.tic_gap - (upright ? 0 : sizes.text_line / 2);
-      if (!f.x.named) lines.push_back({{x, bottom}, {x, bottom - sizes.tic}});
+  void draw_axes(const Panel& p) {
+    const double left = p.area.left, bottom = p.area.bottom;
+    std::vector<Path> lines = {{{left, p.area.top()}, {left, bottom}, {p.area.right(), bottom}}};
+    const bool lowest = p.number + 1 == layout_.panels.size(), upright = layout_.upright_names;
+    for (const Scale::Tic& tic : p.x.tics) {
+      const double x = p.across(tic.at), y = bottom - sizes.tic_gap - (upright ? 0 : sizes.text_line / 2);
+      if (!p.x.named) lines.push_back({{x, bottom}, {x, bottom - sizes.tic}});
       if (!lowest) continue;
       sheet_.write({.text = tic.text,
                     .at = {x, y},
                     .anchor = upright ? Anchor::right : Anchor::centre,
                     .upright = upright,
-                    .markup = !f.x.named});
+                    .markup = !p.x.named});
     }
-    for (const Scale::Tic& tic : f.y.tics) {
-      const double y = f.up(tic.at);
-      if (!f.y.named) lines.push_back({{left, y}, {left - sizes.tic, y}});
-      sheet_.write({.text = tic.text, .at = {left - sizes.tic_gap, y}, .anchor = Anchor::right, .markup = !f.y.named});
+    for (const Scale::Tic& tic : p.y.tics) {
+      const double y = p.up(tic.at);
+      if (!p.y.named) lines.push_back({{left, y}, {left - sizes.tic, y}});
+      sheet_.write({.text = tic.text, .at = {left - sizes.tic_gap, y}, .anchor = Anchor::right, .markup = !p.y.named});
     }
     sheet_.stroke(lines, {});
     double x = layout_.title_x;
-    for (const std::string& title : layout_.titles[panel]) {
-      write_upright(title, {x, bottom + f.area.height / 2});
+    for (const std::string& title : layout_.titles[p.number]) {
+      write_upright(title, {x, bottom + p.area.height / 2});
       x += sizes.text_line;
     }
   }
@@ -89,57 +263,54 @@ class Drawing {
   }
 
   /// Points of the lines of a panel within an area.
-  std::size_t points_in(const Area& area, const PanelFrame& f, std::size_t panel) const {
-    std::size_t count = 0;
-    for (const ChartLine& one : chart_.lines) {
-      if (!one.shown || one.panel != panel) continue;
-      for (std::size_t k = 0; k < std::min(one.x.size(), one.y.size()); ++k) {
-        if (area.holds(f.at(one.x[k], one.y[k]))) ++count;
-      }
+  std::ptrdiff_t points_in(const Area& area, const Panel& p) const {
+    std::ptrdiff_t count = 0;
+    for (const ChartLine& line : chart_.lines) {
+      if (!p.has(line)) continue;
+      count += std::ranges::count_if(points_of(p, line, line.y), [&](const Point& one) { return area.holds(one); });
     }
     return count;
   }
 
   /// The words of level marks stand above them, at the end where they hide less.
-  void draw_marks(const PanelFrame& f, std::size_t panel) {
+  void draw_marks(const Panel& p) {
     constexpr double kHalf = 1.6, kReach = 1;  // half a line of text, half a large symbol
-    const double left = f.area.left, right = f.area.right(), bottom = f.area.bottom, top = f.area.top();
+    const double left = p.area.left, right = p.area.right(), bottom = p.area.bottom, top = p.area.top();
     for (const ChartMark& mark : chart_.marks) {
       const Pen pen{kMark, 0.6, pen_of({.dash = mark.dash}).dashes};
-      const double part = mark.upright ? f.x.part(mark.at) : f.y.part(mark.at);
-      if (!(part >= 0 && part <= 1) || (!mark.upright && mark.panel != panel)) continue;
+      const double part = mark.upright ? p.x.part(mark.at) : p.y.part(mark.at);
+      if (!(part >= 0 && part <= 1) || (!mark.upright && mark.panel != p.number)) continue;
       if (mark.upright) {
-        sheet_.stroke({{f.across(mark.at), bottom}, {f.across(mark.at), top}}, pen);
+        sheet_.stroke({{p.across(mark.at), bottom}, {p.across(mark.at), top}}, pen);
         continue;
       }
-      const double y = f.up(mark.at);
+      const double y = p.up(mark.at);
       sheet_.stroke({{left, y}, {right, y}}, pen);
       if (mark.text.empty()) continue;
       const double width = width_of(mark.text, sizes.small_text);
       const double low = top - y < sizes.mark_line ? y - 2 * kHalf : y;
       const double first = left + sizes.beside_mark, last = right - sizes.beside_mark - width;
       const auto hidden = [&](double from) {
-        return points_in({from - kReach, low - kReach, width + 2 * kReach, 2 * (kHalf + kReach)}, f, panel);
+        return points_in({from - kReach, low - kReach, width + 2 * kReach, 2 * (kHalf + kReach)}, p);
       };
       write_beside(mark.text, {hidden(first) > hidden(last) ? last : first, low + kHalf});
     }
   }
 
-  void draw_upright_words(const PanelFrame& f) {
+  /// Those at upright marks in the first panel, and labels above their points, within the panel.
+  void draw_words(const Panel& p) {
+    const double top = p.area.top();
     for (const UprightWords& words : layout_.upright_words) {
-      const double y = f.area.top() - sizes.mark_line * (static_cast<double>(words.row) + 0.5);
-      write_beside(words.mark->text, {f.area.left + words.from, y});
+      if (p.number > 0) break;
+      const double y = top - sizes.mark_line * (static_cast<double>(words.row) + 0.5);
+      write_beside(words.mark->text, {p.area.left + words.from, y});
     }
-  }
-
-  /// Above their points, within the panel.
-  void draw_labels(const PanelFrame& f, std::size_t panel) {
     for (const ChartLabel& label : chart_.labels) {
-      const Point at = f.at(label.x, label.y);
-      if (label.panel != panel || !f.area.holds(at)) continue;
-      const double half = std::min(width_of(label.text, sizes.small_text), f.area.width) / 2;
-      const double middle = std::clamp(at.x, f.area.left + half, f.area.right() - half);
-      const bool below = f.area.top() - at.y < sizes.above_label + 1.5;
+      const Point at = p.at(label.x, label.y);
+      if (label.panel != p.number || !p.area.holds(at)) continue;
+      const double half = std::min(width_of(label.text, sizes.small_text), p.area.width) / 2;
+      const double middle = std::clamp(at.x, p.area.left + half, p.area.right() - half);
+      const bool below = top - at.y < sizes.above_label + 1.5;
       write_beside(label.text, {middle, at.y + (below ? -sizes.above_label : sizes.above_label)}, Anchor::centre);
     }
   }
@@ -157,13 +328,12 @@ class Drawing {
       sheet_.fill(box, style_of(key.stretch->shade, kShades).paint);
       sheet_.stroke(box.outline(), {{kKeyColour}, 0.5});
     }
-    if (key.bars != nullptr) draw_box(sheet_, box, key.bars->colour, key.bars->hatched);
+    if (key.bars != nullptr) draw_box(box, *key.bars);
     if (key.band != nullptr) sheet_.fill(box, pale(key.band->stroke.colour));
     if (key.line != nullptr) {
       const Stroke& stroke = key.line->stroke;
       if (stroke.joined) sheet_.stroke({{box.left, key.y}, {box.right(), key.y}}, pen_of(stroke));
-      if (stroke.symbol != Symbol::none || !stroke.joined)
-        draw_symbols(sheet_, {{box.left + box.width / 2, key.y}}, stroke);
+      if (stroke.has_symbols()) draw_symbols({{box.left + box.width / 2, key.y}}, stroke);
     }
     sheet_.write({.text = key.name, .at = {box.right() + sizes.key_gap, key.y}, .markup = false});
   }

@@ -1,4 +1,4 @@
-#include "report/pictures/layout.hpp"
+#include "report/pictures/picture.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,31 +7,31 @@
 namespace tribofit {
 namespace {
 
+/// Whether anything is drawn at the k-th point of a line.
+bool is_drawn(const ChartLine& line, std::size_t k) {
+  const auto known = [&](const std::vector<double>& values) { return k < values.size() && std::isfinite(values[k]); };
+  return known(line.y) || known(line.low);
+}
+
 Extent extent_of_abscissa(const Chart& chart) {
   Extent extent(chart.x.logarithmic);
   for (const ChartLine& line : chart.lines) {
     for (std::size_t k = 0; line.shown && k < line.x.size(); ++k) {
-      const bool there =
-          (k < line.y.size() && std::isfinite(line.y[k])) || (k < line.low.size() && std::isfinite(line.low[k]));
-      if (there) extent.add(line.x[k]);
+      if (is_drawn(line, k)) extent.add(line.x[k]);
     }
   }
   for (const ChartBars& bars : chart.bars) {
     extent.add(0);
-    for (const double value : bars.values) extent.add(value);
+    extent.add(bars.values);
   }
-  if (chart.map) {
-    for (const double edge : cell_edges(chart.map->x, chart.x.logarithmic)) extent.add(edge);
-  }
+  if (chart.map) extent.add(cell_edges(chart.map->x));
   return extent;
 }
 
 Extent extent_of_panel(const Chart& chart, std::size_t panel, const Scale& x) {
-  const bool logarithmic = chart.panels[panel].axis.logarithmic;
-  Extent extent(logarithmic);
+  Extent extent(chart.panels[panel].axis.logarithmic);
   for (const ChartLine& line : chart.lines) {
-    if (!line.shown || line.panel != panel) continue;
-    for (std::size_t k = 0; k < line.x.size(); ++k) {
+    for (std::size_t k = 0; line.shown && line.panel == panel && k < line.x.size(); ++k) {
       const double part = x.part(line.x[k]);
       if (!(part >= -1e-9 && part <= 1 + 1e-9)) continue;
       for (const auto* values : {&line.y, &line.low, &line.high}) {
@@ -42,32 +42,26 @@ Extent extent_of_panel(const Chart& chart, std::size_t panel, const Scale& x) {
   for (const ChartMark& mark : chart.marks) {
     if (!mark.upright && mark.panel == panel) extent.add(mark.at);
   }
-  if (chart.map && panel == 0) {
-    for (const double edge : cell_edges(chart.map->y, logarithmic)) extent.add(edge);
-  }
+  if (chart.map && panel == 0) extent.add(cell_edges(chart.map->y));
   return extent;
 }
 
 /// Points at the very edge would be cut in half; a line or a map may reach it.
 double margin_of_abscissa(const Chart& chart) {
   if (!chart.bars.empty()) return 0.04;
-  for (const ChartLine& line : chart.lines) {
-    if (line.shown && (!line.stroke.joined || line.stroke.symbol != Symbol::none)) return 0.03;
-  }
-  return 0;
-}
-
-void add_key(std::vector<Key>& keys, const ChartLine& line) {
-  if (!line.listed || !line.shown) return;
-  auto at = std::find_if(keys.begin(), keys.end(), [&](const Key& key) { return key.name == line.name; });
-  if (at == keys.end()) at = keys.insert(keys.end(), {.name = line.name});
-  if (!line.low.empty() && !line.bars && at->band == nullptr) at->band = &line;
-  if (!line.y.empty() && at->line == nullptr) at->line = &line;
+  const auto has_symbols = [](const ChartLine& line) { return line.shown && line.stroke.has_symbols(); };
+  return std::ranges::any_of(chart.lines, has_symbols) ? 0.03 : 0;
 }
 
 std::vector<Key> keys_of(const Chart& chart) {
   std::vector<Key> keys;
-  for (const ChartLine& line : chart.lines) add_key(keys, line);
+  for (const ChartLine& line : chart.lines) {
+    if (!line.shown) continue;
+    auto at = std::ranges::find(keys, line.name, &Key::name);
+    if (at == keys.end()) at = keys.insert(keys.end(), {.name = line.name});
+    if (!line.low.empty() && !line.bars && at->band == nullptr) at->band = &line;
+    if (!line.y.empty() && at->line == nullptr) at->line = &line;
+  }
   for (const ChartBars& bars : chart.bars) keys.push_back({.name = bars.name, .bars = &bars});
   if (keys.size() == 1) keys.clear();  // one alone needs no name
   std::set<Shade> shades;
@@ -132,16 +126,6 @@ std::vector<double> heights_of(const Chart& chart) {
     heights.push_back(std::max(sizes.least_panel, parts > 0 ? all * panel.part / parts : 0));
   }
   return heights;
-}
-
-void add_colours(const Chart& chart, PictureLayout& layout, double height) {
-  const HeatMap& map = *chart.map;
-  Extent extent(false);
-  for (const std::vector<double>& row : map.z) {
-    for (const double value : row) extent.add(value);
-  }
-  const ChartAxis axis{.quantity = map.quantity, .unit = map.unit, .low = map.low, .high = map.high};
-  layout.colours = scale_of(axis, extent, 0, static_cast<int>(height / 8));
 }
 
 /// Margins left and right; sets where titles go.
@@ -211,13 +195,6 @@ ChartAxis with_room_for_words(const ChartAxis& axis, const Scale& scale, const P
   return wider;
 }
 
-/// Number of tics that have room beside each other.
-int tics_across(const Chart& chart, double width) {
-  const Extent extent = extent_of_abscissa(chart);
-  const Scale trial = scale_of(chart.x, extent, 0, 5);
-  return std::max(2, static_cast<int>(width / (widest(trial) + 5)));
-}
-
 /// The last number of the abscissa may reach beyond the data.
 void keep_last_tic_inside(PictureLayout& layout) {
   for (const Scale::Tic& tic : layout.x.tics) {
@@ -257,13 +234,7 @@ void place_upwards(PictureLayout& layout, const std::vector<double>& heights, do
 
 }  // namespace
 
-std::vector<double> cell_edges(std::vector<double> centres, bool logarithmic) {
-  if (logarithmic) {
-    for (double& centre : centres) centre = std::log(centre);
-    std::vector<double> edges = cell_edges(std::move(centres), false);
-    for (double& edge : edges) edge = std::exp(edge);
-    return edges;
-  }
+std::vector<double> cell_edges(const std::vector<double>& centres) {
   if (centres.empty()) return {};
   if (centres.size() == 1) return {centres[0] - 0.5, centres[0] + 0.5};
   std::vector<double> edges = {centres[0] - (centres[1] - centres[0]) / 2};
@@ -276,17 +247,26 @@ PictureLayout layout_of(const Chart& chart) {
   PictureLayout layout;
   const std::vector<double> heights = heights_of(chart);
   layout.panels.resize(heights.size());
-  layout.x = scale_of(chart.x, extent_of_abscissa(chart), margin_of_abscissa(chart), 5);
+  const Extent across = extent_of_abscissa(chart);
+  const double margin = margin_of_abscissa(chart);
+  layout.x = scale_of(chart.x, across, margin, 5);
   const auto scale_up = [&](std::size_t k, const ChartAxis& axis) {
     const int most = std::max(3, static_cast<int>(heights[k] / 6));
     return scale_of(axis, extent_of_panel(chart, k, layout.x), chart.map ? 0 : 0.05, most);
   };
   for (std::size_t k = 0; k < heights.size(); ++k) layout.y.push_back(scale_up(k, chart.panels[k].axis));
-  if (chart.map) add_colours(chart, layout, heights.front());
+  if (chart.map) {
+    const HeatMap& map = *chart.map;
+    Extent extent(false);
+    for (const std::vector<double>& row : map.z) extent.add(row);
+    layout.colours = scale_of({.quantity = map.quantity, .unit = map.unit, .low = map.low, .high = map.high}, extent, 0,
+                              static_cast<int>(heights.front() / 8));
+  }
   layout.keys = keys_of(chart);
   place_across(chart, layout, heights);
   const double width = layout.panels.front().width;
-  layout.x = scale_of(chart.x, extent_of_abscissa(chart), margin_of_abscissa(chart), tics_across(chart, width));
+  const double of_tic = widest(scale_of(chart.x, across, 0, 5)) + 5;  // with room beside it
+  layout.x = scale_of(chart.x, across, margin, std::max(2, static_cast<int>(width / of_tic)));
   const double names = place_names(layout);
   keep_last_tic_inside(layout);
   layout.upright_words = place_upright_words(chart, layout.x, layout.panels.front().width);

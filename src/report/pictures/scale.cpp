@@ -1,4 +1,4 @@
-#include "report/pictures/scale.hpp"
+#include "report/pictures/picture.hpp"
 
 #include <fmt/format.h>
 

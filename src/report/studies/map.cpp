@@ -158,8 +158,7 @@ Report report_of(const StudiedMachine& studied, const MapRequest& request, const
   section.plain(headline(request, rows), Medium::terminal);
   section.add(extremes_table(request, rows));
   section.add(regimes_table(rows));
-  return study_report(studied, "map", "Map of the motion", std::move(lead), {std::move(section)},
-                      {"to see the speeds at which stick vanishes", "speed"}, options);
+  return study_report(studied, "map", std::move(lead), {std::move(section)}, options);
 }
 
 }  // namespace tribofit

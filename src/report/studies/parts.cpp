@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "tribofit/fit/identification.hpp"
@@ -18,6 +20,20 @@ std::string other_machine_warning(std::string_view subject, const Fit& fit, doub
 
 namespace {
 
+/// Each kind with its title, and the study that goes on from it.
+struct StudyKind {
+  const char *key, *title, *purpose;
+  std::vector<std::string> next;
+};
+const StudyKind kKinds[] = {{"speed", "Motion over speed", "to see which number matters", {"sensitivity"}},
+                            {"phase", "Phase portraits", "to see the speed at which stick vanishes", {"speed"}},
+                            {"response", "Response to a force", "to see portraits of the motion", {"phase"}},
+                            {"map", "Map of the motion", "to see the speeds at which stick vanishes", {"speed"}},
+                            {"sensitivity",
+                             "Which number matters",
+                             "to vary two numbers at once",
+                             {"map", "--x", "stiffness", "--y", "mass", "--csv", "map/"}}};
+
 /// "mu_s = 0.5090, mu_k = 0.3180, alpha = 0.05214 s/mm".
 std::string friction_sentence(const Machine& m) {
   std::vector<std::string> parameters;
@@ -28,10 +44,6 @@ std::string friction_sentence(const Machine& m) {
         fmt::format("{} = {}{}", slot.full_name(), significant(m.parameters[k] / q.si, 4), unit_behind(q.unit)));
   }
   return fmt::format("{}", fmt::join(parameters, ", "));
-}
-
-std::string sharpness_text(const StudiedMachine& studied) {
-  return fmt::format("smoothed by an arctangent of sharpness {} s/mm", significant(1e-3 * studied.sharpness, 4));
 }
 
 ReportTable machine_table(const StudiedMachine& studied) {
@@ -58,8 +70,10 @@ Facts facts_of(const StudiedMachine& studied, const std::string& kind, const Rep
                        significant(value_of(studied.machine, v.name) / v.si, 4) + unit_behind(v.unit));
   }
   facts.emplace_back("natural frequency", significant(studied.machine.natural_hertz(), 4) + " Hz");
-  facts.emplace_back("law",
-                     studied.machine.model.name() + (studied.sharpness > 0 ? ", " + sharpness_text(studied) : ""));
+  const std::string law = studied.machine.model.name(), sharpness = significant(1e-3 * studied.sharpness, 4);
+  facts.emplace_back("law", studied.sharpness > 0
+                                ? fmt::format("{}, smoothed by an arctangent of sharpness {} s/mm", law, sharpness)
+                                : law);
   facts.emplace_back("friction", friction_sentence(studied.machine));
   facts.emplace_back("study", kind);
   if (studied.record || !options.inputs.empty()) {
@@ -86,30 +100,36 @@ Json machine_json(const StudiedMachine& studied) {
 
 }  // namespace
 
-Report study_report(const StudiedMachine& studied, const std::string& kind, const std::string& title, std::string lead,
-                    std::vector<ReportSection> sections, const NextStudy& next, const ReportOptions& options) {
-  Report report = titled_report("study", title, "Study", std::move(lead));
-  report.warnings = studied.warnings;
+Report study_report(const StudiedMachine& studied, const char* kind, std::string lead,
+                    std::vector<ReportSection> sections, const ReportOptions& options,
+                    const std::vector<std::string>& seen) {
+  const StudyKind& own = *std::find_if(std::begin(kKinds), std::end(kKinds),
+                                       [&](const StudyKind& one) { return one.key == std::string_view(kind); });
+  Report report = titled_report("study", own.title, "Study", std::move(lead));
+  report.warnings = joined(studied.warnings, seen);
+  std::erase(report.warnings, "");
   report.facts = facts_of(studied, kind, options);
   report.next = {
-      {next.purpose,
-       command_line(words_of(joined({"study", next.kind}, next.more), options.shared_arguments), options.inputs)}};
+      {own.purpose, command_line(words_of(joined({"study"}, own.next), options.shared_arguments), options.inputs)}};
   ReportSection begin{"record", "", {}, Medium::terminal};
   for (const std::string& warning : studied.warnings) begin.warning(warning);
   begin.text(ReportText::Kind::title, fmt::format("{}: {}", studied.source, studied.machine.model.name()));
   begin.add(ReportFacts{report.facts});
-  for (const std::string& note : studied.notes) begin.plain(note);
+  ReportSection machine{"machine", "The machine", {machine_table(studied)}, Medium::page};
+  for (const std::string& note : studied.notes) {
+    begin.plain(note);
+    machine.soft("Note: " + note);
+  }
+  std::vector<std::string> inputs = options.inputs;
+  std::string checksum;
+  if (studied.record) {
+    if (inputs.empty()) inputs = {studied.record->path};
+    checksum = fmt::format(" Checksum of the rows of the record (XXH64): {:016x}.", studied.record->checksum);
+  }
+  const std::string command = command_line(words_of({"study", kind}, options.arguments), inputs);
   report.add({std::move(begin)});
   report.add(std::move(sections));
-  ReportSection machine{"machine", "The machine", {machine_table(studied)}, Medium::page};
-  for (const std::string& note : studied.notes) machine.soft("Note: " + note);
-  std::vector<std::string> inputs = options.inputs;
-  if (inputs.empty() && studied.record) inputs = {studied.record->path};
-  const std::string checksum =
-      studied.record ? fmt::format(" Checksum of the rows of the record (XXH64): {:016x}.", studied.record->checksum)
-                     : "";
-  report.add({std::move(machine),
-              run_section(report, command_line(words_of({"study", kind}, options.arguments), inputs), {}, checksum)});
+  report.add({std::move(machine), run_section(report, command, {}, checksum)});
   return report;
 }
 
@@ -119,9 +139,11 @@ std::string study_text(const StudiedMachine& studied, const char* kind, const Js
   return text_of(object("tool", tool_json(options), "study", std::move(study)));
 }
 
-Json settled_json(const Settled& settled) {
-  Json out = object("regime", to_string(settled.regime));
-  for (const MeasureInfo& measure : measures()) out[measure.column] = number(settled.*measure.value / measure.si);
+Json settled_json(const Settled& settled, const std::string& way) {
+  const std::string before = way.empty() ? "" : way + "_";
+  Json out;
+  out[way.empty() ? "regime" : "regime_" + way] = to_string(settled.regime);
+  for (const MeasureInfo& m : measures()) out[before + m.column] = number(settled.*m.value / m.si);
   return out;
 }
 
@@ -131,16 +153,13 @@ Json explained_json(const Settled& settled) {
   return out;
 }
 
-std::string measure_columns(const std::string& before) {
-  std::string text;
-  for (const MeasureInfo& measure : measures()) text += "," + before + measure.column;
-  return text;
-}
-
-void add_measure_columns(ReportTable& table) {
-  for (const MeasureInfo& measure : measures()) {
-    table.columns.push_back({with_unit(measure.name, measure.unit), true, 0, measure.heading});
-  }
+ReportTable settled_table(const char* caption, const std::vector<const char*>& more) {
+  ReportTable table(caption);
+  table.columns.push_back({"speed [mm/s]", true, 0, "mm/s"});
+  for (const char* name : more) table.text({name});
+  table.text({"regime"});
+  for (const MeasureInfo& m : measures()) table.columns.push_back({with_unit(m.name, m.unit), true, 0, m.heading});
+  return table;
 }
 
 std::vector<std::string> row_of(std::vector<std::string> row, const Settled& settled) {

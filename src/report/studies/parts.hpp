@@ -16,30 +16,33 @@ namespace tribofit {
 /// What all studies have in common; each of them is one file beside this one, with all that is said, drawn and written
 /// of it.
 
-/// A study of another kind as the next command. `more`: options behind the kind.
-struct NextStudy {
-  std::string purpose, kind;
-  std::vector<std::string> more = {};
-};
-
 /// The report of a study: warnings, facts and numbers of the machine with their standard errors, the sections of the
-/// study, how to run it again, what to do next. kind: "speed", "phase", ...; lead: what a reader must know.
-Report study_report(const StudiedMachine& studied, const std::string& kind, const std::string& title, std::string lead,
-                    std::vector<ReportSection> sections, const NextStudy& next, const ReportOptions& options);
+/// study, how to run it again, what to do next. kind: "speed", "phase", ...; lead: what a reader must know; seen: more
+/// warnings, empty ones among them.
+Report study_report(const StudiedMachine& studied, const char* kind, std::string lead,
+                    std::vector<ReportSection> sections, const ReportOptions& options,
+                    const std::vector<std::string>& seen = {});
 
 /// Its JSON: {"tool", "study": {"kind", "machine", members of `body`}}.
 std::string study_text(const StudiedMachine& studied, const char* kind, const Json& body, const JsonOptions& options);
 
-/// The regime and the measures of a motion, under the names of the columns in CSV.
-Json settled_json(const Settled& settled);
+/// The regime and the measures of a motion, under the names of the columns in CSV; way: "up" makes them "regime_up",
+/// "up_frequency_hz", ...
+Json settled_json(const Settled& settled, const std::string& way = "");
 /// The same, and why a motion did not settle.
 Json explained_json(const Settled& settled);
-/// ",frequency_hz,stick_time_s,..." with something before each name.
-std::string measure_columns(const std::string& before = "");
 
-/// A column a measure.
-void add_measure_columns(ReportTable& table);
-/// The regime and the measures of a motion, behind what `row` holds.
+/// A file with the objects that row_of makes of 0 to count - 1 as rows, under the names of their members. It makes one
+/// of 0 even where there are none.
+template <class RowOf>
+void write_rows(WholeFolder& files, const std::string& name, std::size_t count, RowOf row_of, int digits = 0) {
+  CsvTable<std::size_t> table(files, name, {{csv_names(row_of(0)), row_of}}, digits);
+  for (std::size_t k = 0; k < count; ++k) table.row(k);
+}
+
+/// A table of motions: their speed, columns of these names, the regime and the measures.
+ReportTable settled_table(const char* caption, const std::vector<const char*>& more = {});
+/// A row of it, behind what `row` holds.
 std::vector<std::string> row_of(std::vector<std::string> row, const Settled& settled);
 
 /// "6.283 mm/s (4.000 rpm)".

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 
 #include "parts.hpp"
 
@@ -14,10 +14,6 @@ std::string response_sentence(const Response& study) {
       "A(omega) of a force of {} N ({}): {} mm at rest, {} mm at the natural frequency", significant(study.force, 4),
       study.harmonics.empty() ? "half the drop of friction" : "the fundamental of friction",
       significant(study.amplitude_at_rest / kMillimetre, 4), significant(study.amplitude_at_natural / kMillimetre, 4));
-}
-
-std::string no_spectra(const Response& study) {
-  return fmt::format("There is no settled vibration, so there are no spectra ({}).", to_string(study.settled.regime));
 }
 
 ReportTable harmonics_table(const Response& study) {
@@ -71,13 +67,12 @@ Chart spectrum_chart(const Response& study, const char* id, const char* title, C
                      double ResponseLine::*amplitude, double unit) {
   axis.from_zero = true;
   Chart chart = half_chart(id, title, {.quantity = "frequency", .unit = "Hz", .from_zero = true}, std::move(axis));
-  ChartLine stems{.name = "lines", .stroke = {.colour = Colour::blue, .width = 2}, .listed = false};
+  ChartLine stems{.name = "amplitude", .stroke = {.colour = Colour::blue, .width = 2}};
   ChartLine ends{.name = "amplitude", .stroke = dots(Colour::blue, Symbol::square)};
   for (const ResponseLine& h : study.harmonics) {
-    stems.add(h.frequency, 0);
-    stems.add(h.frequency, h.*amplitude / unit);
-    stems.add(h.frequency, std::numeric_limits<double>::quiet_NaN());
-    ends.add(h.frequency, h.*amplitude / unit);
+    const double value = h.*amplitude / unit;
+    for (const double y : {0.0, value, std::nan("")}) stems.add(h.frequency, y);
+    ends.add(h.frequency, value);
   }
   chart.lines = {std::move(stems), std::move(ends)};
   mark_natural(study, chart);
@@ -101,14 +96,14 @@ std::string study_json(const StudiedMachine& studied, const Response& study, con
 
 void write_study(const std::string& folder, const Response& study) {
   WholeFolder files(folder);
-  using Columns = std::vector<CsvColumn<std::size_t>>;
-  Columns of_curve = {{"frequency_hz", [&](std::size_t i) { return study.frequency[i]; }},
-                      {"displacement_amplitude_mm", [&](std::size_t i) { return 1e3 * study.amplitude[i]; }}};
-  Columns of_lines = {{"harmonic", [](std::size_t n) { return n + 1; }},
-                      {csv_names(harmonic_json({})), [&](std::size_t n) { return harmonic_json(study.harmonics[n]); }}};
-  CsvTable curve(files, "response.csv", std::move(of_curve)), lines(files, "harmonics.csv", std::move(of_lines));
-  for (std::size_t i = 0; i < study.frequency.size(); ++i) curve.row(i);
-  for (std::size_t n = 0; n < study.harmonics.size(); ++n) lines.row(n);
+  write_rows(files, "response.csv", study.frequency.size(), [&](std::size_t i) {
+    return object("frequency_hz", study.frequency[i], "displacement_amplitude_mm", 1e3 * study.amplitude[i]);
+  });
+  write_rows(files, "harmonics.csv", study.harmonics.size(), [&](std::size_t n) {
+    Json row = object("harmonic", n + 1);
+    row.update(harmonic_json(study.harmonics.empty() ? ResponseLine{} : study.harmonics[n]));
+    return row;
+  });
   files.commit();
 }
 
@@ -125,7 +120,8 @@ Report report_of(const StudiedMachine& studied, const Response& study, const Rep
   section.text(ReportText::Kind::item, seen, Medium::terminal);
   section.add(curve_chart(study));
   if (study.harmonics.empty()) {
-    section.soft(no_spectra(study));
+    section.soft(
+        fmt::format("There is no settled vibration, so there are no spectra ({}).", to_string(study.settled.regime)));
   } else {
     section.add(spectrum_chart(study, "spectrum-force", "Spectrum of the friction force",
                                {.quantity = "friction force", .unit = "N"}, &ResponseLine::force, 1));
@@ -133,11 +129,8 @@ Report report_of(const StudiedMachine& studied, const Response& study, const Rep
                                {.quantity = "displacement", .unit = "mm"}, &ResponseLine::displacement, kMillimetre));
   }
   section.add(harmonics_table(study));
-  Report report = study_report(studied, "response", "Response to a force",
-                               capitalised(frequencies) + ". " + response_sentence(study) + ".", {std::move(section)},
-                               {"to see portraits of the motion", "phase"}, options);
-  if (!seen.empty()) report.warnings.push_back(seen);
-  return report;
+  return study_report(studied, "response", capitalised(frequencies) + ". " + response_sentence(study) + ".",
+                      {std::move(section)}, options, {seen});
 }
 
 }  // namespace tribofit

@@ -33,7 +33,12 @@ ReportTable elasticity_table(const std::vector<Sensitivity>& study) {
   return table;
 }
 
-constexpr std::size_t kShown = 6;  // sweeps that are not switched off at first
+/// A value of each measure under its name.
+Json by_measure(const std::vector<double>& values) {
+  Json json = Json::object();
+  for (std::size_t k = 0; k < values.size(); ++k) json[measures()[k].name] = number(values[k]);
+  return json;
+}
 
 /// A measure over each variable, those that matter most first.
 Chart sweep_chart(const std::vector<Sensitivity>& study, std::size_t measure) {
@@ -43,6 +48,7 @@ Chart sweep_chart(const std::vector<Sensitivity>& study, std::size_t measure) {
                            {info.name, info.unit});
   chart.marks = {{1, true, Dash::dotted, "the machine", 0}};
   chart.height = 380;
+  constexpr std::size_t kShown = 6;  // that are not switched off at first
   std::size_t k = 0;
   for (const std::size_t i : ranked(study, measure)) {
     const Sensitivity& one = study[i];
@@ -78,17 +84,13 @@ Chart bar_chart(const std::vector<Sensitivity>& study, std::size_t measure) {
 std::string study_json(const StudiedMachine& studied, const std::vector<Sensitivity>& study,
                        const JsonOptions& options) {
   const auto variable = [](const Sensitivity& one) {
-    Json elasticities = Json::object(), sweep = Json::array();
-    for (std::size_t k = 0; k < one.elasticities.size(); ++k) {
-      elasticities[measures()[k].name] = number(one.elasticities[k]);
-    }
+    Json sweep = Json::array();
     for (std::size_t i = 0; i < one.values.size(); ++i) {
-      Json point = object("value", one.values[i] / one.variable.si);
-      point.update(explained_json(one.settled[i]));
-      sweep.push_back(point);
+      sweep.push_back(object("value", one.values[i] / one.variable.si));
+      sweep.back().update(explained_json(one.settled[i]));
     }
     return object("name", one.variable.name, "unit", one.variable.unit, "value", one.base / one.variable.si,
-                  "elasticities", elasticities, "sweep", sweep);
+                  "elasticities", by_measure(one.elasticities), "sweep", std::move(sweep));
   };
   Json order = Json::object();
   for (std::size_t k = 0; k < measures().size(); ++k) {
@@ -99,30 +101,23 @@ std::string study_json(const StudiedMachine& studied, const std::vector<Sensitiv
 
 void write_study(const std::string& folder, const std::vector<Sensitivity>& study) {
   WholeFolder files(folder);
-  struct Row {
-    const Sensitivity& sweep;
-    std::size_t i;
+  const auto row_of = [](const Sensitivity& one, double value) {
+    return object("variable", one.variable.name, "unit", one.variable.unit, "value", value / one.variable.si);
   };
-  const CsvColumn<Row> name = {"variable", [](const Row&r) { return r.sweep.variable.name; }},
-                       unit = {"unit", [](const Row&r) { return r.sweep.variable.unit; }};
-  std::vector<CsvColumn<Row>> swept_columns = {
-      name,
-      unit,
-      {"value", [](const Row& r) { return r.sweep.values[r.i] / r.sweep.variable.si; }},
-      {"relative_value", [](const Row& r) { return r.sweep.values[r.i] / r.sweep.base; }},
-      {"regime" + measure_columns(), [](const Row& r) { return settled_json(r.sweep.settled[r.i]); }},
-  };
-  std::vector<CsvColumn<Row>> ranked_columns = {
-      name, unit, {"value", [](const Row& r) { return r.sweep.base / r.sweep.variable.si; }}};
-  for (std::size_t k = 0; k < measures().size(); ++k) {
-    ranked_columns.emplace_back(measures()[k].name, [k](const Row& r) { return r.sweep.elasticities[k]; });
-  }
-  CsvTable sweeps(files, "sensitivity.csv", std::move(swept_columns)),
-      table(files, "elasticities.csv", std::move(ranked_columns));
+  std::vector<Json> swept;
   for (const Sensitivity& one : study) {
-    for (std::size_t i = 0; i < one.values.size(); ++i) sweeps.row({one, i});
-    table.row({one, 0});
+    for (std::size_t i = 0; i < one.values.size(); ++i) {
+      Json& row = swept.emplace_back(row_of(one, one.values[i]));
+      row["relative_value"] = number(one.values[i] / one.base);
+      row.update(settled_json(one.settled[i]));
+    }
   }
+  write_rows(files, "sensitivity.csv", swept.size(), [&](std::size_t k) { return swept[k]; });
+  write_rows(files, "elasticities.csv", study.size(), [&](std::size_t k) {
+    Json row = row_of(study[k], study[k].base);
+    row.update(by_measure(study[k].elasticities));
+    return row;
+  });
   files.commit();
 }
 
@@ -134,8 +129,9 @@ Report report_of(const StudiedMachine& studied, const std::vector<Sensitivity>& 
     sweeps.add(sweep_chart(study, k));
     const std::vector<std::size_t> order = ranked(study, k);
     if (order.empty() || !std::isfinite(study[order.front()].elasticities[k])) continue;
-    lead.push_back(fmt::format("{} answers most to {} ({} % for 1 %)", measures()[k].name,
-                               study[order.front()].variable.name, with_sign(study[order.front()].elasticities[k], 3)));
+    const Sensitivity& first = study[order.front()];
+    lead.push_back(fmt::format("{} answers most to {} ({} % for 1 %)", measures()[k].name, first.variable.name,
+                               with_sign(first.elasticities[k], 3)));
   }
   bars.add(elasticity_table(study));
   bars.heading("What matters most");
@@ -143,12 +139,9 @@ Report report_of(const StudiedMachine& studied, const std::vector<Sensitivity>& 
     bars.item(measures()[k].name + ": " + ranking_sentence(study, k));
   }
   if (!options.csv_written) bars.plain("--csv FOLDER writes the sweeps behind these (sensitivity.csv)");
-  return study_report(studied, "sensitivity", "Which number matters",
-                      lead.empty() ? "At this machine no measure has an elasticity."
-                                   : capitalised(fmt::format("{}.", fmt::join(lead, "; "))),
-                      {std::move(bars), std::move(sweeps)},
-                      {"to vary two numbers at once", "map", {"--x", "stiffness", "--y", "mass", "--csv", "map/"}},
-                      options);
+  const std::string said = lead.empty() ? "At this machine no measure has an elasticity."
+                                        : capitalised(fmt::format("{}.", fmt::join(lead, "; ")));
+  return study_report(studied, "sensitivity", said, {std::move(bars), std::move(sweeps)}, options);
 }
 
 }  // namespace tribofit

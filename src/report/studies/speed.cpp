@@ -1,6 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <initializer_list>
+#include <utility>
 
 #include "parts.hpp"
 #include "tribofit/fit/identification.hpp"
@@ -80,10 +84,7 @@ ReportTable own_table(const StudiedMachine& studied, const SpeedStudy& study) {
 
 /// The measures over speed at `most` speeds, evenly; a second row where a motion that begins in sliding differs.
 ReportTable speed_table(const SpeedStudy& study, std::size_t most) {
-  ReportTable table("Over speed");
-  table.columns.push_back({"speed [mm/s]", true, 0, "mm/s"});
-  table.text({"begun in", "regime"});
-  add_measure_columns(table);
+  ReportTable table = settled_table("Over speed", {"begun in"});
   const std::vector<std::size_t> shown = thinned(study.velocity.size(), most);
   for (const std::size_t i : shown) {
     const std::string velocity = significant(study.velocity[i] / kMillimetre, 4);
@@ -100,82 +101,65 @@ ReportTable speed_table(const SpeedStudy& study, std::size_t most) {
   return table;
 }
 
-/// An upright mark at each critical speed; what happens at one speed shares a mark.
-void add_critical(const SpeedStudy& study, Chart& chart) {
+/// Marks the critical speeds, with the ranges of those of sliding or of stick over all panels. What happens at one
+/// speed shares a mark.
+void mark_critical(const SpeedStudy& study, bool of_sliding, Chart& chart) {
   const std::size_t first = chart.marks.size();
-  const auto add = [&](double at, Dash dash, const char* text) {
+  const auto add = [&](double at, Dash dash, const std::string& text, const Interval* range) {
     if (!std::isfinite(at)) return;
-    for (std::size_t k = first; k < chart.marks.size(); ++k) {
-      ChartMark& mark = chart.marks[k];
-      if (!is_same_speed(mark.at * kMillimetre, at)) continue;
-      mark.text += std::string(", ") + text;
-      return;
-    }
-    chart.marks.push_back({at / kMillimetre, true, dash, text, 0});
+    const auto same = [&](const ChartMark& mark) { return is_same_speed(mark.at * kMillimetre, at); };
+    auto mark = std::find_if(chart.marks.begin() + static_cast<std::ptrdiff_t>(first), chart.marks.end(), same);
+    if (mark == chart.marks.end()) mark = chart.marks.insert(mark, {at / kMillimetre, true, dash});
+    mark->text += (mark->text.empty() ? "" : ", ") + text;
+    if (range == nullptr || !std::isfinite(range->lower) || !std::isfinite(range->upper)) return;
+    mark->text += " " + range_text(*range, kMillimetre);
+    chart.stretches.push_back({range->lower / kMillimetre, range->upper / kMillimetre, Shade::range});
   };
   const CriticalSpeed& c = study.critical;
-  for (const double v : c.linear) add(v, Dash::dotted, "stability of sliding");
-  add(c.stick_vanishes, Dash::dashed, "stick vanishes");
-  add(c.stick_returns, Dash::dash_dotted, "stick returns");
-}
-
-/// The 95 % range of a critical speed, over all panels, with its numbers at the mark.
-void add_range(const Interval& range, double at, Chart& chart) {
-  if (!std::isfinite(range.lower) || !std::isfinite(range.upper)) return;
-  chart.stretches.push_back({range.lower / kMillimetre, range.upper / kMillimetre, Shade::range});
-  for (ChartMark& mark : chart.marks) {
-    if (mark.upright && is_same_speed(mark.at * kMillimetre, at)) mark.text += " " + range_text(range, kMillimetre);
+  for (const double& v : c.linear) {
+    const bool last = of_sliding && &v == &c.linear.back();
+    add(v, Dash::dotted, "stability of sliding", last ? &study.linear_interval : nullptr);
   }
+  add(c.stick_vanishes, Dash::dashed, "stick vanishes", of_sliding ? nullptr : &study.vanishes_interval);
+  add(c.stick_returns, Dash::dash_dotted, "stick returns", of_sliding ? nullptr : &study.returns_interval);
 }
 
-bool is_sticking(const Settled& settled) {
-  return settled.regime != Regime::sliding;
+/// One way over speed: its motions, and where stick vanishes or returns on it.
+struct Way {
+  const char* name;
+  const std::vector<Settled>& settled;
+  double jump;
+  Stroke stroke;
+};
+std::array<Way, 2> ways_of(const SpeedStudy& study) {
+  Stroke up = marked(1), down = marked(2);
+  up.dash = Dash::solid;
+  down.dash = Dash::dashed;
+  up.size = down.size = 5;
+  return {{{"begun in stick (way up)", study.up, study.critical.stick_vanishes, up},
+           {"begun in sliding (way down)", study.down, study.critical.stick_returns, down}}};
 }
 
-/// Adds the points of a sweep, and the line through them with its jump where stick vanishes or returns: the measure of
+/// Adds the points of a way, and the line through them with its jump where stick vanishes or returns: the measure of
 /// the sticking motion goes on to that speed as straight as it came.
-void add_sweep(const SpeedStudy& study, const std::vector<Settled>& settled, double jump, const MeasureInfo& measure,
-               const Stroke& stroke, const std::string& name, std::size_t panel, Chart& chart) {
-  ChartLine line{.name = name, .stroke = stroke, .panel = panel};
+void add_way(const SpeedStudy& study, const Way& way, const MeasureInfo& measure, std::size_t panel, Chart& chart) {
+  ChartLine line{.name = way.name, .stroke = way.stroke, .panel = panel}, points = line;
   line.stroke.symbol = Symbol::none;
-  ChartLine points{.name = name, .stroke = stroke, .listed = false, .panel = panel};
   points.stroke.joined = false;
-  const auto value = [&](std::size_t i) { return settled[i].*measure.value / measure.si; };
-  for (std::size_t i = 0; i < settled.size(); ++i) {
-    const double v = study.velocity[i];
+  const auto value = [&](std::size_t i) { return way.settled[i].*measure.value / measure.si; };
+  const auto sticks = [&](std::size_t i) { return way.settled[i].regime != Regime::sliding; };
+  for (std::size_t i = 0; i < way.settled.size(); ++i) {
+    const double v = study.velocity[i], jump = way.jump;
     line.add(v / kMillimetre, value(i));
     points.add(v / kMillimetre, value(i));
-    if (i == 0 || i + 1 == settled.size() || !(jump > v && jump < study.velocity[i + 1])) continue;
-    if (!is_sticking(settled[i]) || is_sticking(settled[i + 1])) continue;
+    if (i == 0 || i + 1 == way.settled.size() || !(jump > v && jump < study.velocity[i + 1])) continue;
+    if (!sticks(i) || sticks(i + 1)) continue;
     const double slope = (value(i) - value(i - 1)) / (v - study.velocity[i - 1]);
     line.add(jump / kMillimetre, value(i) + slope * (jump - v));
     line.add(jump / kMillimetre, value(i + 1));
   }
   chart.lines.push_back(std::move(line));
   chart.lines.push_back(std::move(points));
-}
-
-void add_sweeps(const SpeedStudy& study, const MeasureInfo& measure, std::size_t panel, Chart& chart) {
-  const auto stroke = [](std::size_t kind, Dash dash) {
-    Stroke out = marked(kind);
-    out.dash = dash;
-    out.size = 5;
-    return out;
-  };
-  add_sweep(study, study.up, study.critical.stick_vanishes, measure, stroke(1, Dash::solid), "begun in stick (way up)",
-            panel, chart);
-  add_sweep(study, study.down, study.critical.stick_returns, measure, stroke(2, Dash::dashed),
-            "begun in sliding (way down)", panel, chart);
-}
-
-/// What the record says at its own speed; nothing where it does not.
-void add_measured(const StudiedMachine& studied, const MeasureInfo& measure, std::size_t panel, Chart& chart) {
-  const Estimate* value = measured_value(studied, measure);
-  if (value == nullptr) return;
-  ChartLine& line = chart.line("measured", dots(Colour::black, Symbol::cross, 9), panel);
-  line.bars = true;
-  line.add(studied.machine.disc_velocity() / kMillimetre, value->value / measure.si,
-           kNormalQuantile95 * value->std_error / measure.si);
 }
 
 /// Speeds in equal ratios are seen apart on a logarithmic axis.
@@ -187,25 +171,28 @@ ChartAxis speed_axis(const SpeedStudy& study) {
 }
 
 Chart over_speed(const StudiedMachine& studied, const SpeedStudy& study, const char* id, const char* title,
-                 const std::vector<std::string>& names) {
+                 std::initializer_list<const char*> names) {
   Chart chart{.id = id,
               .title = title,
               .x = speed_axis(study),
               .panels = {},
               .height = 150 + 170 * static_cast<int>(names.size())};
-  for (const std::string& name : names) {
+  for (const std::string name : names) {
     const MeasureInfo& measure = measure_named(name);
     const std::size_t panel = chart.panels.size();
     chart.panels.push_back({{.quantity = measure.name, .unit = measure.unit, .from_zero = true}});
-    add_sweeps(study, measure, panel, chart);
-    add_measured(studied, measure, panel, chart);
+    for (const Way& way : ways_of(study)) add_way(study, way, measure, panel, chart);
+    if (const Estimate* measured = measured_value(studied, measure)) {
+      ChartLine& line = chart.line("measured", dots(Colour::black, Symbol::cross, 9), panel);
+      line.bars = true;
+      line.add(studied.machine.disc_velocity() / kMillimetre, measured->value / measure.si,
+               kNormalQuantile95 * measured->std_error / measure.si);
+    }
     if (name == "frequency") {
       chart.marks.push_back({studied.machine.natural_hertz(), false, Dash::dotted, "natural frequency", panel});
     }
   }
-  add_critical(study, chart);
-  add_range(study.vanishes_interval, study.critical.stick_vanishes, chart);
-  add_range(study.returns_interval, study.critical.stick_returns, chart);
+  mark_critical(study, false, chart);
   return chart;
 }
 
@@ -215,10 +202,9 @@ Chart growth_chart(const SpeedStudy& study) {
               .note = "Above zero steady sliding is unstable: a vibration grows until it sticks or is held by the law.",
               .x = speed_axis(study),
               .panels = {{.axis = {.quantity = "growth rate", .unit = "1/s"}}},
-              .lines = {{"growth rate", in_unit(study.velocity, kMillimetre), study.growth_rate, stroke_of(0)}}};
-  chart.marks.push_back({0, false, Dash::solid, "", 0});
-  add_critical(study, chart);
-  if (!study.critical.linear.empty()) add_range(study.linear_interval, study.critical.linear.back(), chart);
+              .lines = {{"growth rate", in_unit(study.velocity, kMillimetre), study.growth_rate, stroke_of(0)}},
+              .marks = {{.dash = Dash::solid}}};
+  mark_critical(study, true, chart);
   return chart;
 }
 
@@ -247,48 +233,41 @@ std::string study_json(const StudiedMachine& studied, const SpeedStudy& study, c
 
 void write_study(const std::string& folder, const SpeedStudy& study) {
   WholeFolder files(folder);
-  std::vector<CsvColumn<std::size_t>> columns = {
-      {"velocity_mm_s", [&](std::size_t i) { return 1e3 * study.velocity[i]; }},
-      {"growth_rate_1_s", [&](std::size_t i) { return study.growth_rate[i]; }},
-      {"regime_up" + measure_columns("up_"), [&](std::size_t i) { return settled_json(study.up[i]); }},
-      {"regime_down" + measure_columns("down_"), [&](std::size_t i) { return settled_json(study.down[i]); }},
-  };
-  CsvTable table(files, "speed.csv", std::move(columns));
-  for (std::size_t i = 0; i < study.velocity.size(); ++i) table.row(i);
+  write_rows(files, "speed.csv", study.velocity.size(), [&](std::size_t i) {
+    Json row = object("velocity_mm_s", 1e3 * study.velocity[i], "growth_rate_1_s", study.growth_rate[i]);
+    row.update(settled_json(study.up[i], "up"));
+    row.update(settled_json(study.down[i], "down"));
+    return row;
+  });
   files.commit();
 }
 
 Report report_of(const StudiedMachine& studied, const SpeedStudy& study, const ReportOptions& options) {
   constexpr std::size_t kRowsOfATerminal = 20, kRowsOfAPage = 200;
   const std::string seen = seen_sentence(study.own), between = bistable_sentence(study.critical);
-  std::vector<std::string> lead;
+  std::string lead;
   ReportSection section{"speed", "Over the speed of the disc", {}};
-  {
-    Chart motion = over_speed(studied, study, "speed-motion", "Frequency, stick and amplitude over speed",
-                              {"frequency", "stick-time", "peak-to-peak"});
-    motion.note = "Where the two ways differ, both motions go on where they have begun.";
-    section.add(std::move(motion));
-    section.add(over_speed(studied, study, "speed-energy", "Energy before break-away and fastest slip over speed",
-                           {"energy", "peak-speed"}));
-    section.add(growth_chart(study));
-  }
+  Chart motion = over_speed(studied, study, "speed-motion", "Frequency, stick and amplitude over speed",
+                            {"frequency", "stick-time", "peak-to-peak"});
+  motion.note = "Where the two ways differ, both motions go on where they have begun.";
+  section.add(std::move(motion));
+  section.add(over_speed(studied, study, "speed-energy", "Energy before break-away and fastest slip over speed",
+                         {"energy", "peak-speed"}));
+  section.add(growth_chart(study));
   section.add(own_table(studied, study));
   section.text(ReportText::Kind::item, seen, Medium::terminal);
   section.heading("Critical speed");
   for (const std::string& sentence : critical_sentences(studied, study)) {
     section.item(sentence);
-    lead.push_back(capitalised(sentence) + ".");
+    lead += (lead.empty() ? "" : " ") + capitalised(sentence) + ".";
   }
   section.plain(between);
-  if (!between.empty()) lead.push_back(between);
+  if (!between.empty()) lead += " " + between;
   section.add(speed_table(study, kRowsOfATerminal), Medium::terminal);
   ReportTable all = speed_table(study, kRowsOfAPage);
   all.folded = true;
   section.add(std::move(all));
-  Report report = study_report(studied, "speed", "Motion over speed", fmt::format("{}", fmt::join(lead, " ")),
-                               {std::move(section)}, {"to see which number matters", "sensitivity"}, options);
-  if (!seen.empty()) report.warnings.push_back(seen);
-  return report;
+  return study_report(studied, "speed", std::move(lead), {std::move(section)}, options, {seen});
 }
 
 }  // namespace tribofit

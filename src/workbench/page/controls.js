@@ -112,7 +112,8 @@ function conditionsChoice() {
     try {
       await ask("/api/conditions", given);
       // The model in view goes along, where it can be fitted under these conditions.
-      await ask("/api/show", { page: workbench.page, turn: ++workbench.turn, choice: workbench.choice }).catch(() => null);
+      await ask("/api/show", { page: workbench.page, turn: ++workbench.turn, choice: workbench.choice })
+        .catch(() => history.replaceState(null, ""));
       location.reload();
     } catch (trouble) {
       showTrouble(trouble);

@@ -6,7 +6,7 @@ const workbench = {
   token: new URLSearchParams(location.search).get("token") || "",
   page: Array.from(crypto.getRandomValues(new Uint8Array(8)), (b) => b.toString(16).padStart(2, "0")).join(""),
   turn: 0, asking: null, settling: 0, polling: 0, choice: null, rung: null, world: null, changedAt: 0,
-  plausible: new Map(), unfolded: new Set(), rungs: [], plan: null, past: [], shownChoice: null, formulaPending: false,
+  plausible: new Map(), unfolded: new Set(), past: [], shownChoice: null, formulaPending: false,
 };
 
 /** Asks the server; a refusal is thrown as what it says. */
@@ -115,7 +115,6 @@ async function show(full = false, passing = false) {
     if (!full || !sameNames(answer.rung)) showParameters(answer.rung);
     else updateParameters(answer.rung);
     showPicture(answer.report);
-    workbench.rungs = answer.rungs;
     showRungs(answer.rungs); // in the colours of the report
     if (!full) document.documentElement.dataset.answerMs = (performance.now() - workbench.changedAt).toFixed(0);
     document.documentElement.dataset.workbench = answer.rung.full ? "settled" : "shown";
@@ -128,37 +127,16 @@ async function show(full = false, passing = false) {
   }
 }
 
-/** What undo goes back to, and what a reload and other windows of this session begin with. */
+const otherWindows = new BroadcastChannel("tribofit workbench");
+
+/** What undo goes back to, and what a reload begins with; other windows of this session show it in their ladders. */
 function remember(passing) {
-  if (passing) return;
   const now = JSON.stringify(workbench.choice);
-  if (workbench.shownChoice === now) return;
+  if (passing || workbench.shownChoice === now) return;
   if (workbench.shownChoice) workbench.past.push(workbench.shownChoice);
   workbench.shownChoice = now;
-  try {
-    localStorage.setItem(storageName(), now);
-  } catch {
-    // a browser that keeps nothing: the session lives in the server all the same
-  }
-}
-
-const storageName = () => `tribofit ${workbench.world.trace.path} ${workbench.world.trace.samples}`;
-
-/** The choice shown last, by this window or another; null where there is none that this session knows. */
-function rememberedChoice() {
-  try {
-    const text = localStorage.getItem(storageName());
-    const known = text && workbench.world.rungs.some((rung) => sameChoice(rung.choice, JSON.parse(text)));
-    return known ? JSON.parse(text) : null;
-  } catch {
-    return null;
-  }
-}
-
-function sameChoice(a, b) {
-  const sorted = (value) => (value && typeof value === "object" && !Array.isArray(value)
-    ? Object.fromEntries(Object.keys(value).sort().map((key) => [key, sorted(value[key])])) : value);
-  return JSON.stringify(sorted(a)) === JSON.stringify(sorted(b));
+  history.replaceState(JSON.parse(now), "");
+  otherWindows.postMessage("");
 }
 
 function undo() {
@@ -180,12 +158,6 @@ function showPicture(report) {
     ...(trace ? [{ ...rest(trace), id: "health", title: "Health of the data" }] : [])];
   const box = document.getElementById("workbench-picture");
   showReport(box, { ...report, sections: sections.filter((section) => section.items.length > 0) });
-  showAgain = () => {
-    showPicture(report);
-    showRungs(workbench.rungs);
-    const plan = document.getElementById("workbench-plan");
-    if (plan && workbench.plan) fillSection(plan, workbench.plan);
-  };
   document.getElementById("workbench-facts").replaceChildren(make("summary", {}, "The record and the result in numbers"),
     ...box.querySelectorAll(":scope > .verdict, :scope > .facts"));
   addBrushes(box);
@@ -283,7 +255,6 @@ function showFinding(state) {
   const rows = state.ladder.map((step) => [step.added ? `+ ${step.added}` : `${state.found.law} law`,
     `${number(step.held_out_rmse)} ± ${number(step.held_out_std_error, 2)}`]);
   const section = make("section", { id: "workbench-plan" });
-  workbench.plan = state.plan;
   if (state.plan) fillSection(section, state.plan);
   box.replaceChildren(table("Ladder of the diagnosis", ["Rung", "Held-out error"], [...rows, ["Noise floor", number(state.floor_rmse)]], [1]),
     make("div", { className: "row" },
@@ -307,9 +278,8 @@ async function beginPlan(event) {
 async function saveSession() {
   try {
     const session = await ask("/api/session");
-    const url = URL.createObjectURL(new Blob([JSON.stringify(session, null, 2)], { type: "application/json" }));
-    make("a", { href: url, download: `${workbench.world.trace.path.split("/").pop().replace(/\.[^.]*$/, "")}-session.json` }).click();
-    setTimeout(() => URL.revokeObjectURL(url), 10000);
+    const name = workbench.world.trace.path.split("/").pop().replace(/\.[^.]*$/, "");
+    save(`${name}-session.json`, new Blob([JSON.stringify(session, null, 2)], { type: "application/json" }));
   } catch (trouble) {
     showTrouble(trouble);
   }
@@ -361,7 +331,7 @@ async function startWorkbench(main) {
     showTrouble(trouble);
     return;
   }
-  workbench.choice = rememberedChoice() || workbench.world.begin;
+  workbench.choice = history.state || workbench.world.begin;
   controls.append(
     make("section", { id: "workbench-rungs", "aria-label": "Ladder of models", className: "scroll", tabindex: "0" }),
     lawChoice(), effectChoices(),
@@ -369,9 +339,7 @@ async function startWorkbench(main) {
     folded("An effect of your own", formulaChoice()), folded("Part of the record", selectionChoice()),
     folded("Radius, speed and load", conditionsChoice()),
     folded("The same from the command line", commandBox()));
-  addEventListener("storage", (event) => {
-    if (event.key === storageName()) ask("/api/begin").then((world) => showRungs(world.rungs)).catch(() => {});
-  });
+  otherWindows.onmessage = () => ask("/api/begin").then((world) => showRungs(world.rungs)).catch(() => {});
   fillControls();
   await show();
   followDiagnosis();
