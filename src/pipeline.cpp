@@ -14,7 +14,7 @@
 #include "fit/fit_laws.hpp"
 #include "fit/requested_effects.hpp"
 #include "ingest/declared_conditions.hpp"
-#include "segmentation/obstacles.hpp"
+#include "segmentation/counts.hpp"
 #include "tribofit/execution/parallel.hpp"
 #include "tribofit/execution/stop.hpp"
 #include "tribofit/ingest/input_error.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "tribofit/ingest/input_error.hpp"
+#include "simulation_checks.hpp"
 
 namespace tribofit {
 
@@ -44,12 +44,10 @@ struct Polyline {
 };
 
 void check_steps(const std::vector<double>& times, const std::vector<double>& speeds) {
-  if (times.empty() || times.size() != speeds.size()) {
-    throw InputError("a speed profile needs as many speeds as times, at least one", "give one speed for every time");
-  }
-  if (std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) != times.end()) {
-    throw InputError("the times of a speed profile do not increase", "sort them and remove repeated ones");
-  }
+  require(!times.empty() && times.size() == speeds.size(),
+          "a speed profile needs as many speeds as times, at least one", "give one speed for every time");
+  require(std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) == times.end(),
+          "the times of a speed profile do not increase", "sort them and remove repeated ones");
 }
 
 }  // namespace
@@ -60,7 +58,7 @@ SpeedProfile constant_speed(double omega) {
 
 SpeedProfile reversing_speed(double amplitude, double frequency) {
   const double w = 2 * std::numbers::pi * frequency;
-  if (!(w > 0)) throw InputError("the frequency of a reversing drive is not positive", "give it in Hz");
+  require(w > 0, "the frequency of a reversing drive is not positive", "give it in Hz");
   return {[=](double t) { return amplitude * std::sin(w * t); },
           [=](double t) { return amplitude * w * std::cos(w * t); },
           [=](double t) { return amplitude / w * (1 - std::cos(w * t)); }};
@@ -79,11 +77,9 @@ SpeedProfile piecewise_linear_speed(std::vector<double> times, std::vector<doubl
 }
 
 SpeedProfile rippled_speed(SpeedProfile base, double amplitude, double order, double phase) {
-  if (!(amplitude >= 0 && amplitude < 1)) {
-    throw InputError("the amplitude of the speed ripple is not within 0 and 1 (excluded)", "give it as e.g. 0.05");
-  }
-  if (!(order > 0))
-    throw InputError("the order of the speed ripple is not positive", "give waves a revolution, e.g. 1");
+  require(amplitude >= 0 && amplitude < 1, "the amplitude of the speed ripple is not within 0 and 1 (excluded)",
+          "give it as e.g. 0.05");
+  require(order > 0, "the order of the speed ripple is not positive", "give waves a revolution, e.g. 1");
   if (amplitude == 0) return base;
   // u = n theta + phase obeys du/d(base angle) = n (1 + A cos u): the true and the eccentric anomaly of an orbit of
   // eccentricity A, of which the latter grows in proportion to the base angle.
@@ -115,7 +111,7 @@ SpeedProfile stepped_speed(std::vector<double> times, std::vector<double> speeds
   };
   std::vector<double> at(times.begin() + 1, times.end());
   for (const Pause& pause : pauses) {
-    if (!(pause.duration > 0)) throw InputError("a pause of the disc is not positive", "give it as e.g. 10s,5s");
+    require(pause.duration > 0, "a pause of the disc is not positive", "give it as e.g. 10s,5s");
     at.insert(at.end(), {pause.begin, pause.begin + pause.duration});
   }
   std::sort(at.begin(), at.end());
@@ -123,10 +119,9 @@ SpeedProfile stepped_speed(std::vector<double> times, std::vector<double> speeds
   std::vector<double> line_speeds = {wanted(line_times[0])};
   for (const double t : at) {
     if (wanted(t) == line_speeds.back()) continue;
-    if (t < line_times.back()) {
-      throw InputError("the speed of the disc changes twice within " + std::to_string(kSpeedChangeTime) + " s",
-                       "leave more time between steps and pauses");
-    }
+    require(t >= line_times.back(),
+            "the speed of the disc changes twice within " + std::to_string(kSpeedChangeTime) + " s",
+            "leave more time between steps and pauses");
     if (t > line_times.back()) {
       line_times.push_back(t);
       line_speeds.push_back(line_speeds.back());

@@ -111,20 +111,13 @@ class RateStateSlider {
     const T value = -(renewed * (u + psi));
     return {value, value - renewed, -renewed};
   }
-  /// d psi/dt alone.
-  T rate_value(std::size_t i, const T& v, const T& u, const T& psi) const {
-    using std::exp;
-    if (evolution_ == StateEvolution::ageing) return (v0_ * exp(-psi) - v) / p_.distance[i];
-    return -(v / p_.distance[i]) * (u + psi);
-  }
-
   State rates(const State& y, double speed) const {
     using std::exp;
     const T v = v0_ * exp(y[0]);
     State out;
     T left = p_.stiffness * (speed - v);
     for (std::size_t i = 0; i < kStates; ++i) {
-      out[1 + i] = rate_value(i, v, y[0], y[1 + i]);
+      out[1 + i] = rate_of(i, v, y[0], y[1 + i]).value;
       left -= p_.b[i] * out[1 + i];
     }
     out[0] = left / p_.a;
@@ -139,8 +132,6 @@ class RateStateSlider {
     const double diagonal = 1 / (Step::gamma * h);
     std::array<T, kStates> by_u{}, inverse{}, above{};
     T pivot = T(diagonal) + p_.stiffness * v / p_.a;
-    State first;
-    T left = p_.stiffness * (speed - v);
     for (std::size_t i = 0; i < kStates; ++i) {
       const Rate rate = rate_of(i, v, state_[0], state_[1 + i]);
       const T part = p_.b[i] / p_.a;
@@ -148,10 +139,7 @@ class RateStateSlider {
       inverse[i] = 1.0 / (diagonal - rate.by_psi);
       above[i] = part * rate.by_psi * inverse[i];  // W_ui/W_ii
       pivot += part * rate.by_u + above[i] * rate.by_u;
-      first[1 + i] = rate.value;
-      left -= p_.b[i] * rate.value;
     }
-    first[0] = left / p_.a;
     const T over_pivot = 1.0 / pivot;
     const auto solve = [&](const State& right) {
       State x;
@@ -162,7 +150,7 @@ class RateStateSlider {
       return x;
     };
     step_.take(
-        state_, h, first, [&](std::size_t, const State& at) { return rates(at, speed); }, solve);
+        state_, h, rates(state_, speed), [&](std::size_t, const State& at) { return rates(at, speed); }, solve);
     double squares = 0;
     for (const T& x : step_.error()) squares += number_of(x) * number_of(x);
     return std::sqrt(squares / (1 + kStates)) / kSliderTolerance;

@@ -1,22 +1,18 @@
 #include "tribofit/oscillator/sensors.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <numbers>
-#include <string>
 #include <utility>
 
 #include "normal_stream.hpp"
+#include "simulation_checks.hpp"
 #include "statistics/low_pass.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/friction/evaluate.hpp"
-#include "tribofit/ingest/input_error.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
-#include "tribofit/output/digits.hpp"
 
 namespace tribofit {
 
@@ -24,30 +20,24 @@ namespace {
 
 void check(const Sensors& sensors) {
   const auto not_negative = [](double value, const char* name, const char* unit = "") {
-    if (std::isfinite(value) && value >= 0) return;
-    throw InputError(fmt::format("the {} is negative: {}{}", name, general(value), unit), "give zero (absent) or more");
+    require_not_negative(value, unit, name, "give zero (absent) or more");
   };
-  not_negative(sensors.mass_below, "mass below the force sensor", " kg");
-  not_negative(sensors.force_bandwidth, "bandwidth of the force sensor", " Hz");
-  not_negative(sensors.velocity_high_pass, "high-pass of the vibrometer", " Hz");
-  not_negative(sensors.velocity_low_pass, "low-pass of the vibrometer", " Hz");
-  not_negative(sensors.friction_low_pass, "low-pass of the friction channel", " Hz");
-  not_negative(sensors.friction_noise, "noise on mu");
-  not_negative(sensors.velocity_noise, "noise on the velocity", " m/s");
-  not_negative(sensors.friction_resolution, "resolution of mu");
-  not_negative(sensors.velocity_resolution, "resolution of the velocity", " m/s");
-  if (!(sensors.force_damping > 0)) {
-    throw InputError("the damping of the force sensor is not positive", "0.7 is usual");
-  }
-  if (!std::isfinite(sensors.friction_delay)) {
-    throw InputError("the delay of the friction channel is not finite", "give it as e.g. 2ms");
-  }
-  if (!(std::isfinite(sensors.velocity_gain) && sensors.velocity_gain != 0)) {
-    throw InputError("the gain of the vibrometer is zero", "1 is a perfect one");
-  }
-  if (!(sensors.noise_colour >= 0 && sensors.noise_colour < 1)) {
-    throw InputError("the colour of the noise is not within 0 (included) and 1", "0 is white, 0.9 strongly coloured");
-  }
+  not_negative(sensors.mass_below, "the mass below the force sensor", " kg");
+  not_negative(sensors.force_bandwidth, "the bandwidth of the force sensor", " Hz");
+  not_negative(sensors.velocity_high_pass, "the high-pass of the vibrometer", " Hz");
+  not_negative(sensors.velocity_low_pass, "the low-pass of the vibrometer", " Hz");
+  not_negative(sensors.friction_low_pass, "the low-pass of the friction channel", " Hz");
+  not_negative(sensors.friction_noise, "the noise on mu");
+  not_negative(sensors.velocity_noise, "the noise on the velocity", " m/s");
+  not_negative(sensors.friction_resolution, "the resolution of mu");
+  not_negative(sensors.velocity_resolution, "the resolution of the velocity", " m/s");
+  require(sensors.force_damping > 0, "the damping of the force sensor is not positive", "0.7 is usual");
+  require(std::isfinite(sensors.friction_delay), "the delay of the friction channel is not finite",
+          "give it as e.g. 2ms");
+  require(std::isfinite(sensors.velocity_gain) && sensors.velocity_gain != 0, "the gain of the vibrometer is zero",
+          "1 is a perfect one");
+  require(sensors.noise_colour >= 0 && sensors.noise_colour < 1,
+          "the colour of the noise is not within 0 (included) and 1", "0 is white, 0.9 strongly coloured");
 }
 
 /// Samples [begin, end) as one slip, for hooks that work on a stretch of samples. velocity: v_r there.
@@ -195,10 +185,8 @@ std::vector<double> sensed_velocity(std::vector<double> v, const SimulatedMotion
 Sensors checked_sensors(const Sensors& stated, double rate, const FrictionModel& model, std::span<const double> p) {
   const Sensors sensors = true_sensors(stated, model, p);
   check(sensors);
-  if (sensors.force_bandwidth >= 0.5 * rate && sensors.force_bandwidth > 0) {
-    throw InputError("the bandwidth of the force sensor is above half the sampling rate",
-                     "leave it out, or sample faster");
-  }
+  require(sensors.force_bandwidth < 0.5 * rate || !(sensors.force_bandwidth > 0),
+          "the bandwidth of the force sensor is above half the sampling rate", "leave it out, or sample faster");
   return sensors;
 }
 
@@ -233,6 +221,20 @@ Trace sensed(const SimulatedMotion& motion, std::vector<double> friction, std::v
   return trace;
 }
 
+/// The model and parameters without what only sensors see.
+std::pair<FrictionModel, std::vector<double>> at_the_interface(const FrictionModel& model, std::span<const double> p) {
+  std::vector<Effect> effects;
+  std::vector<double> kept(p.begin(), p.begin() + static_cast<std::ptrdiff_t>(model.base_count()));
+  for (std::size_t k = 0; k < model.effects().size(); ++k) {
+    const Effect& effect = model.effects()[k];
+    if (std::visit([]<class E>(const E&) { return hooks::SensorEffect<E>; }, effect)) continue;
+    effects.push_back(effect);
+    const std::size_t count = describe(effect).parameters.size();
+    for (std::size_t i = 0; i < count; ++i) kept.push_back(p[model.offset(k) + i]);
+  }
+  return {FrictionModel(model.law(), std::move(effects)), std::move(kept)};
+}
+
 }  // namespace
 
 Recording record(const SimulatedMotion& motion, const FrictionModel& model, std::span<const double> p,
@@ -252,24 +254,6 @@ Trace recorded_trace(SimulatedMotion motion, const FrictionModel& model, std::sp
   trace.time = std::move(motion.time);
   return trace;
 }
-
-namespace {
-
-/// The model and parameters without what only sensors see.
-std::pair<FrictionModel, std::vector<double>> at_the_interface(const FrictionModel& model, std::span<const double> p) {
-  std::vector<Effect> effects;
-  std::vector<double> kept(p.begin(), p.begin() + static_cast<std::ptrdiff_t>(model.base_count()));
-  for (std::size_t k = 0; k < model.effects().size(); ++k) {
-    const Effect& effect = model.effects()[k];
-    if (std::visit([]<class E>(const E&) { return hooks::SensorEffect<E>; }, effect)) continue;
-    effects.push_back(effect);
-    const std::size_t count = describe(effect).parameters.size();
-    for (std::size_t i = 0; i < count; ++i) kept.push_back(p[model.offset(k) + i]);
-  }
-  return {FrictionModel(model.law(), std::move(effects)), std::move(kept)};
-}
-
-}  // namespace
 
 double floor_rmse(const SimulatedMotion& motion, const Recording& recording, const FrictionModel& model,
                   std::span<const double> p) {

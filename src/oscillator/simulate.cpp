@@ -125,20 +125,8 @@ double Simulation::gap_to_break_away(double t) {
     strokes = flow_.strokes();
     strokes.go(direction, slid_);
   }
-  const SlidingState<double> at = {.velocity = 0,
-                                   .direction = direction,
-                                   .acceleration = setup_.disc_acceleration(t),
-                                   .time = std::max(t, 0.0),
-                                   .angle = setup_.drive.speed.angle(t),
-                                   .distance = t > 0 ? slid_ : 0,
-                                   .reversal_distance = strokes.gone(slid_),
-                                   .earlier_strokes = strokes.earlier(),
-                                   .stick_time = stick_time,
-                                   .load = setup_.load(t),
-                                   .mean_load = setup_.drive.mean_load,
-                                   .temperature = setup_.temperature(t),
-                                   .mean_temperature = setup_.drive.mean_temperature,
-                                   .disc_speed = setup_.drive.speed.speed(t)};
+  SlidingState<double> at = surroundings(setup_, t, direction, stick_time, slid_, strokes);
+  at.acceleration = setup_.disc_acceleration(t);
   const double limit = at.load * friction_.break_away_friction(at);
   if (!(at.load > 0) || !std::isfinite(limit)) {
     throw InputError((at.load > 0 ? "friction is not finite at t = " : "the load is not positive at t = ") +

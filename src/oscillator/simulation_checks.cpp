@@ -52,9 +52,6 @@ void check_friction(const FrictionModel& model, std::span<const double> p) {
 void require_positive(double x, const char* unit, const char* what, const char* advice) {
   require(std::isfinite(x) && x > 0, fmt::format("{} is not positive: {}{}", what, general(x), unit), advice);
 }
-void require_not_negative(double x, const char* unit, const char* what, const char* advice) {
-  require(std::isfinite(x) && x >= 0, fmt::format("{} is negative: {}{}", what, general(x), unit), advice);
-}
 
 }  // namespace
 
@@ -69,6 +66,10 @@ std::string list_of(const std::vector<Parameter>& parameters, const std::functio
 
 void require(bool good, const std::string& problem, const std::string& advice) {
   if (!good) throw InputError(problem, advice);
+}
+
+void require_not_negative(double x, const char* unit, const char* what, const char* advice) {
+  require(std::isfinite(x) && x >= 0, fmt::format("{} is negative: {}{}", what, general(x), unit), advice);
 }
 
 void check_rig_and_drive(const Rig& rig, const Drive& drive) {

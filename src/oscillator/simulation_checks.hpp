@@ -15,6 +15,7 @@ std::string list_of(const std::vector<Parameter>& parameters, const std::functio
 
 /// Throws InputError unless `good`.
 void require(bool good, const std::string& problem, const std::string& advice);
+void require_not_negative(double x, const char* unit, const char* what, const char* advice);
 
 /// Each throws InputError for what cannot be, and says what to do.
 void check_rig_and_drive(const Rig& rig, const Drive& drive);

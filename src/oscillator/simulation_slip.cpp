@@ -187,14 +187,15 @@ void Simulation::watch_creep(double h) {
     return flow_.slip_speed(t, y) - 0.5 * std::abs(setup_.disc_velocity(t));
   };
   const double before = excess(time_, state_), after = excess(time_ + h, next_state_);
+  const auto crossing = [&] {
+    return find_zero([&](double t) { return excess(t, dense(t, h)); }, time_, time_ + h, before, after);
+  };
   const bool has_memory = friction_.state_count() > 0;
-  if (!has_memory && before >= 0 && after < 0) {
-    slow_again_ = find_zero([&](double t) { return excess(t, dense(t, h)); }, time_, time_ + h, before, after);
-  }
+  if (!has_memory && before >= 0 && after < 0) slow_again_ = crossing();
   const bool still_creeping = !has_memory || flow_.slid(time_, state_) - slid_at_reversal_ < least_slip_;
   if (!(before < 0 && after >= 0 && still_creeping)) return;
   if (!has_memory) slid_at_reversal_ = flow_.slid(time_, state_);
-  creep_end_ = find_zero([&](double t) { return excess(t, dense(t, h)); }, time_, time_ + h, before, after);
+  creep_end_ = crossing();
   friction_at_creep_end_ = flow_.friction(creep_end_, dense(creep_end_, h));
 }
 

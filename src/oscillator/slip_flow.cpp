@@ -40,20 +40,11 @@ double SlipFlow::slid(double t, const BlockState& y) const {
 }
 
 SlidingState<double> SlipFlow::instant(double speed, double block_acceleration, double t, const BlockState& y) const {
-  return {.velocity = direction_ * speed,
-          .direction = direction_,
-          .acceleration = block_acceleration,
-          .time = std::max(t, 0.0),
-          .angle = setup_.needs_angle ? setup_.drive.speed.angle(t) : 0,
-          .distance = setup_.needs_distance && t > 0 ? slid(t, y) : 0,
-          .reversal_distance = strokes_.gone(setup_.needs_strokes ? slid(t, y) : 0),
-          .earlier_strokes = strokes_.earlier(),
-          .stick_time = stick_time_,
-          .load = setup_.load(t),
-          .mean_load = setup_.drive.mean_load,
-          .temperature = setup_.temperature(t),
-          .mean_temperature = setup_.drive.mean_temperature,
-          .disc_speed = setup_.disc_speed(t)};
+  const double way = setup_.needs_distance || setup_.needs_strokes ? slid(t, y) : 0;
+  SlidingState<double> at = surroundings(setup_, t, direction_, stick_time_, way, strokes_);
+  at.velocity = direction_ * speed;
+  at.acceleration = block_acceleration;
+  return at;
 }
 
 double SlipFlow::friction_at(double speed, double block_acceleration, double t, const BlockState& y,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -76,6 +77,25 @@ class StrokesSoFar {
   double direction_ = 0, begin_ = -std::numeric_limits<double>::infinity();
   StrokeMemory memory_;
 };
+
+/// What friction depends on at time t, but for speed and acceleration.
+inline SlidingState<double> surroundings(const Setup& setup, double t, double direction, double stick_time, double slid,
+                                         const StrokesSoFar& strokes) {
+  return {.velocity = 0,
+          .direction = direction,
+          .acceleration = 0,
+          .time = std::max(t, 0.0),
+          .angle = setup.needs_angle ? setup.drive.speed.angle(t) : 0,
+          .distance = setup.needs_distance && t > 0 ? slid : 0,
+          .reversal_distance = strokes.gone(slid),
+          .earlier_strokes = strokes.earlier(),
+          .stick_time = stick_time,
+          .load = setup.load(t),
+          .mean_load = setup.drive.mean_load,
+          .temperature = setup.temperature(t),
+          .mean_temperature = setup.drive.mean_temperature,
+          .disc_speed = setup.disc_speed(t)};
+}
 
 /// The equations of motion while v_r keeps one direction.
 ///

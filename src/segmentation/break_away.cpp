@@ -226,13 +226,8 @@ bool contact_creeps(const std::vector<Rise>& rises, const std::vector<Window>& w
   return median(std::move(gradualness)) > kGradual;
 }
 
-/// Break-away in samples from the begin of a window.
-struct Located {
-  double t0 = 0, error = 0;
-  bool is_sharp = false;  // hardly a sample shows the growth
-};
-
-Located settle_break_away(const Window& w, const CommonGrowth& common, bool creeps) {
+/// In samples from the begin of the window.
+BreakAway settle_break_away(const Window& w, const CommonGrowth& common, bool creeps) {
   const double error = std::max(1.0, w.crossing);  // nothing is less certain than the window is long
   if (creeps) return {w.crossing, std::min(error, common.time), false};
   const Sums s = sums_of(w, common.fit.growth, w.t0);
@@ -240,7 +235,7 @@ Located settle_break_away(const Window& w, const CommonGrowth& common, bool cree
     const Eigen::Vector4d lever = s.mixed / s.h;
     const double own = common.variance / s.h + std::max(0.0, lever.dot(common.covariance * lever));
     const double seen = w.crossing - w.t0;
-    const double best = std::max(kBestBreakAway, kBetweenSamples / std::max(1.0, seen * seen));
+    const double best = kBetweenSamples / std::clamp(seen * seen, 1.0, 1 / kBetweenSamples);
     return {w.t0, std::min(error, std::sqrt(own + best)), seen < kFewShowGrowth};
   }
   // No growth as from a stick (a velocity that merely turns near zero): where it last leaves the level of the stick.
@@ -248,6 +243,16 @@ Located settle_break_away(const Window& w, const CommonGrowth& common, bool cree
   while (i > 0 && w.v[i] > kLeavesStick * common.level) --i;
   const auto t0 = static_cast<double>(i);
   return {t0, std::max(1.0, w.crossing - t0), true};
+}
+
+/// Where the stretch before `end` begins over which the disc pulls at about the speed it has at the end: a disc that
+/// stood still, or was slower, in the same stick loaded the spring along another line.
+std::size_t begin_of_pull(const Motion& motion, std::size_t begin, std::size_t end) {
+  if (motion.disc_velocity.empty() || end < begin + kShowsLine) return begin;
+  const double least = kSlowerPull * std::abs(motion.disc_velocity[end - 1]);
+  std::size_t i = end - kShowsLine;
+  while (i > begin && std::abs(motion.disc_velocity[i - 1]) > least) --i;
+  return i;
 }
 
 }  // namespace
@@ -271,9 +276,9 @@ std::vector<BreakAway> locate_break_aways(const Motion& motion, const std::vecto
   }
   const bool creeps = contact_creeps(rises, windows);
   for (std::size_t k = 0; k < rises.size(); ++k) {
-    const Located at = settle_break_away(windows[k], common, creeps);
-    result.push_back({std::max(time_of(motion, windows[k], at.t0), motion.time[rises[k].onset.stick_begin]),
-                      motion.step * at.error, at.is_sharp});
+    const BreakAway at = settle_break_away(windows[k], common, creeps);
+    result.push_back({std::max(time_of(motion, windows[k], at.time), motion.time[rises[k].onset.stick_begin]),
+                      motion.step * at.std_error, at.is_sharp});
   }
   return result;
 }
@@ -302,20 +307,6 @@ double locate_restick(const Motion& motion, SampleRange slip, std::size_t next, 
   const double where = line.slope < 0 ? line.middle - line.value / line.slope : n;
   return motion.time[first] + std::clamp(where, 0.0, n + 1) * motion.step;
 }
-
-namespace {
-
-/// Where the stretch before `end` begins over which the disc pulls at about the speed it has at the end: a disc that
-/// stood still, or was slower, in the same stick loaded the spring along another line.
-std::size_t begin_of_pull(const Motion& motion, std::size_t begin, std::size_t end) {
-  if (motion.disc_velocity.empty() || end < begin + kShowsLine) return begin;
-  const double least = kSlowerPull * std::abs(motion.disc_velocity[end - 1]);
-  std::size_t i = end - kShowsLine;
-  while (i > begin && std::abs(motion.disc_velocity[i - 1]) > least) --i;
-  return i;
-}
-
-}  // namespace
 
 StickFriction friction_at(const Motion& motion, SampleRange stick, double time, int direction) {
   std::size_t begin = stick.size() > 2 * kShowsLine ? stick.begin + stick.size() / 2 : stick.begin;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "tribofit/segmentation/cycles.hpp"
@@ -41,6 +42,10 @@ PullLevels pull_levels(const Segmentation& segmentation);
 
 /// Cycles with a stick and a slip.
 std::size_t count_of_cycles(const Segmentation& segmentation);
+
+/// What keeps the data from carrying an analysis, as sentences; none when nothing does.
+/// must_slip: the analysis needs slip, as a fit of a friction law does.
+std::vector<std::string> obstacles(const Motion& motion, const Segmentation& segmentation, bool must_slip);
 
 /// Whether each sample slips. Before the first and after the last cycle only the speed shows it.
 std::vector<bool> slipping_samples(const Motion& motion, const Segmentation& segmentation);

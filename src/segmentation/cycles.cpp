@@ -11,7 +11,6 @@
 #include "counts.hpp"
 #include "limits.hpp"
 #include "phases.hpp"
-#include "spoilt_stretches.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/execution/parallel.hpp"
 #include "tribofit/output/digits.hpp"
@@ -239,19 +238,17 @@ void measure(const Motion& motion, int threads, std::vector<Cycle>& cycles) {
 std::vector<RawSlip> split_at_steps(const Motion& motion, const std::vector<RawSlip>& slips) {
   std::vector<RawSlip> parts;
   for (const RawSlip& slip : slips) {
-    std::size_t begin = slip.samples.begin;
-    for (const Step& step : motion.steps) {
-      if (step.end <= begin || step.begin >= slip.samples.end) continue;
-      RawSlip part = slip;
-      part.samples = {begin, std::min(step.end, slip.samples.end)};
-      begin = part.samples.end;
+    RawSlip part = slip;
+    const auto add_up_to = [&](std::size_t end) {
+      part.samples.end = end;
       if (part.samples.size() > 0) parts.push_back(part);
+      part.samples.begin = end;
+    };
+    for (const Step& step : motion.steps) {
+      if (step.end <= part.samples.begin || step.begin >= slip.samples.end) continue;
+      add_up_to(std::min(step.end, slip.samples.end));
     }
-    if (begin < slip.samples.end) {
-      RawSlip part = slip;
-      part.samples.begin = begin;
-      parts.push_back(part);
-    }
+    add_up_to(slip.samples.end);
   }
   return parts;
 }
@@ -334,15 +331,8 @@ Segmentation slips_of_points(const Motion& motion) {
 }  // namespace
 
 std::string_view to_string(MotionKind kind) {
-  switch (kind) {
-    case MotionKind::stick_slip:
-      return "stick-slip";
-    case MotionKind::always_slipping:
-      return "always-slipping";
-    case MotionKind::always_sticking:
-      break;
-  }
-  return "always-sticking";
+  if (kind == MotionKind::stick_slip) return "stick-slip";
+  return kind == MotionKind::always_slipping ? "always-slipping" : "always-sticking";
 }
 
 RecordKind kind_of_record(const Motion& motion, const Segmentation& segmentation) {

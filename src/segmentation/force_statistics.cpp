@@ -46,18 +46,11 @@ std::vector<Fall> falls_of(const std::vector<double>& friction, double least) {
   std::size_t high = 0, low = 0;
   bool falling = false;
   for (std::size_t i = 1; i < friction.size(); ++i) {
-    if (falling) {
-      if (friction[i] < friction[low]) low = i;
-      if (friction[i] - friction[low] < least) continue;
-      falls.push_back({high, low});
-      falling = false;
-      high = i;
-    } else {
-      if (friction[i] > friction[high]) high = i;
-      if (friction[high] - friction[i] < least) continue;
-      falling = true;
-      low = i;
-    }
+    if (falling ? friction[i] < friction[low] : friction[i] > friction[high]) (falling ? low : high) = i;
+    if (std::abs(friction[i] - friction[falling ? low : high]) < least) continue;
+    if (falling) falls.push_back({high, low});
+    (falling ? high : low) = i;
+    falling = !falling;
   }
   return falls;
 }
@@ -74,10 +67,8 @@ std::size_t quarter(std::size_t begin, std::size_t end) {
 }
 
 bool changes_sign(const std::vector<double>& friction, std::size_t begin, std::size_t end) {
-  for (std::size_t i = begin + 1; i <= end; ++i) {
-    if (friction[i - 1] * friction[i] < 0) return true;
-  }
-  return false;
+  const std::span<const double> part = std::span(friction).subspan(begin, end - begin + 1);
+  return std::adjacent_find(part.begin(), part.end(), [](double a, double b) { return a * b < 0; }) != part.end();
 }
 
 /// Falls that are quicker than the rises between them; none where most are not.

@@ -13,6 +13,12 @@ namespace {
 
 struct Sum {
   double value = 0, velocity = 0, count = 0;
+  void add(double v, double friction) {
+    value += friction;
+    velocity += v;
+    count += 1;
+  }
+  double mean() const { return count > 0 ? value / count : std::nan(""); }
 };
 
 template <class Use>
@@ -43,14 +49,11 @@ void add_bins(const Motion& motion, const std::vector<const Cycle*>& slips, int 
       const double at = direction * v / fastest * static_cast<double>(segmentation::kLevelBins);
       if (!(at > 0)) return;
       const auto bin = std::min(segmentation::kLevelBins - 1, static_cast<std::size_t>(at));
-      for (Sum* sum : {&sums[bin], &all[bin]}) {
-        sum->value += friction;
-        sum->velocity += v;
-        sum->count += 1;
-      }
+      sums[bin].add(v, friction);
+      all[bin].add(v, friction);
     });
     for (std::size_t bin = 0; bin < segmentation::kLevelBins; ++bin) {
-      if (sums[bin].count > 0) means[bin].push_back(sums[bin].value / sums[bin].count);
+      if (sums[bin].count > 0) means[bin].push_back(sums[bin].mean());
     }
   }
   for (std::size_t bin = 0; bin < segmentation::kLevelBins; ++bin) {
@@ -63,11 +66,9 @@ void add_bins(const Motion& motion, const std::vector<const Cycle*>& slips, int 
 double level_of(const Motion& motion, const Cycle& slip) {
   Sum sum;
   for_each_sample(motion, slip, [&](double v, double friction) {
-    if (slip.direction * v < segmentation::kFasterPart * slip.peak_velocity) return;
-    sum.value += slip.direction * friction;
-    sum.count += 1;
+    if (slip.direction * v >= segmentation::kFasterPart * slip.peak_velocity) sum.add(v, slip.direction * friction);
   });
-  return sum.count > 0 ? sum.value / sum.count : std::nan("");
+  return sum.mean();
 }
 
 FrictionLevels::Level level_between(const Motion& motion, const std::vector<const Cycle*>& by_peak, std::size_t begin,

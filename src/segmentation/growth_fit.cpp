@@ -18,15 +18,6 @@ double faster_in(const Window& window, const Growth& growth) {
   return std::clamp(1 + growth.gain * window.excess, 1 / kMostFaster, kMostFaster);
 }
 
-}  // namespace
-
-Growth growth_in(const Window& window, const Growth& growth) {
-  const double faster = faster_in(window, growth);
-  return {window.pull * growth.a / (faster * faster), growth.lambda * faster, growth.b, growth.gain};
-}
-
-namespace {
-
 /// Sums over samples, N side by side: the exponential runs by recurrence, and one by one each sample would wait for the
 /// one before. Derivatives of the model by log A, log lambda and B; that by the gain is made of the first two.
 template <int N, bool with_shared>
@@ -104,30 +95,6 @@ Sums sums_at(const Window& w, const Growth& common, double t0) {
   if constexpr (with_shared) fill_shared(many, last, w.excess / faster_in(w, common), s);
   return s;
 }
-
-}  // namespace
-
-Sums sums_of(const Window& window, const Growth& growth, double t0) {
-  return sums_at<true>(window, growth, t0);
-}
-
-double fit_time(const Window& w, const Growth& growth, double start) {
-  double t0 = std::clamp(start, -2.0, w.crossing);
-  Sums here = sums_at<false>(w, growth, t0);
-  for (int k = 0; k < 20 && here.h > 0; ++k) {
-    double step = std::clamp(here.g / here.h, -5 / growth.lambda, 5 / growth.lambda);
-    bool better = false;
-    for (int half = 0; half < 6 && !better; ++half, step *= 0.5) {
-      const double next = std::clamp(t0 + step, -2.0, w.crossing);
-      const Sums there = sums_at<false>(w, growth, next);
-      if (there.rss < here.rss) t0 = next, here = there, better = true;
-    }
-    if (!better || std::abs(step) < 1e-3) break;
-  }
-  return t0;
-}
-
-namespace {
 
 /// What the windows say of the growth that they share, each with its own break-away taken out.
 struct SharedGrowth {
@@ -235,6 +202,31 @@ bool take_out_foreign(std::vector<Window>& windows, const Growth& growth) {
 }
 
 }  // namespace
+
+Growth growth_in(const Window& window, const Growth& growth) {
+  const double faster = faster_in(window, growth);
+  return {window.pull * growth.a / (faster * faster), growth.lambda * faster, growth.b, growth.gain};
+}
+
+Sums sums_of(const Window& window, const Growth& growth, double t0) {
+  return sums_at<true>(window, growth, t0);
+}
+
+double fit_time(const Window& w, const Growth& growth, double start) {
+  double t0 = std::clamp(start, -2.0, w.crossing);
+  Sums here = sums_at<false>(w, growth, t0);
+  for (int k = 0; k < 20 && here.h > 0; ++k) {
+    double step = std::clamp(here.g / here.h, -5 / growth.lambda, 5 / growth.lambda);
+    bool better = false;
+    for (int half = 0; half < 6 && !better; ++half, step *= 0.5) {
+      const double next = std::clamp(t0 + step, -2.0, w.crossing);
+      const Sums there = sums_at<false>(w, growth, next);
+      if (there.rss < here.rss) t0 = next, here = there, better = true;
+    }
+    if (!better || std::abs(step) < 1e-3) break;
+  }
+  return t0;
+}
 
 PooledFit fit_growth(std::vector<Window>& windows, Growth growth, FreeGrowth free) {
   const PooledFit fit = fit_all(windows, growth, free);

@@ -91,12 +91,12 @@ inline constexpr std::size_t kFewestLevels = 8;
 inline constexpr double kMostExcess = 0.5, kMostFaster = 2;
 /// Growth over the slip, from which a contact creeps: it has no sharp onset.
 inline constexpr double kGradual = 0.3;
-/// Samples before the level from which a break-away shows; of the level, where the velocity leaves the stick where none
-/// does; and variance of the best [samples, squared]: a twelfth of a sample.
-inline constexpr double kShowsGrowth = 0.5, kLeavesStick = 0.25, kBestBreakAway = 1.0 / 144;
+/// Samples before the level from which a break-away shows, and of the level, where the velocity leaves the stick where
+/// none does.
+inline constexpr double kShowsGrowth = 0.5, kLeavesStick = 0.25;
 /// Variance of one of which a single sample shows the growth [samples, squared]: it is anywhere between two. Of more
-/// samples it is within as much smaller a part. Where so many do not, one may be before it or after: within so many
-/// standard errors, and one sample.
+/// samples it is within as much smaller a part, of a dozen at the most. Where so many do not, one may be before it or
+/// after: within so many standard errors, and one sample.
 inline constexpr double kBetweenSamples = 1.0 / 12, kFewShowGrowth = 4, kBeforeOrAfter = 2;
 
 // ---- re-stick

@@ -1,11 +1,10 @@
-#include "obstacles.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
+#include "counts.hpp"
 #include "limits.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/statistics/quantiles.hpp"

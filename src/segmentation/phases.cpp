@@ -92,43 +92,6 @@ void drop_chatter(std::vector<RawSlip>& slips, double peak) {
   slips = std::move(kept);
 }
 
-}  // namespace
-
-Thresholds thresholds_of(const Motion& motion, int threads) {
-  Thresholds t;
-  if (motion.size() == 0) return t;
-  const double noise = motion.velocity_noise;
-  const double peak = typical_peak(motion, threads);
-  // Rounding of omega r - v_b is no motion.
-  double fastest = std::abs(motion.plateau_velocity);
-  for (const double v : motion.disc_velocity) fastest = std::max(fastest, std::abs(v));
-  fastest = std::max(fastest, std::abs(motion.constant_disc_velocity));
-  if (motion.stick.below > 0) return {motion.stick.below, motion.stick.below, peak > motion.stick.below ? peak : 0};
-  if (peak <= std::max(kSlipsOverError * noise, kRoundingPart * fastest))
-    return {kSlipsOverError * noise, kStickOverError * noise, 0};
-  t.peak = peak;
-  t.slip = std::max(kSlipsOverFastest * peak, std::min(kSlipsOverError * noise, kSlipAtMost * peak));
-  t.stick = std::max(kStickOverPeak * peak, std::min(kStickOverError * noise, kStickAtMost * peak));
-  return t;
-}
-
-std::vector<RawSlip> find_slips(const Motion& motion, const Thresholds& thresholds) {
-  if (thresholds.peak == 0) return {};
-  std::vector<RawSlip> slips = hysteresis(motion, thresholds);
-  drop_chatter(slips, thresholds.peak);
-  return slips;
-}
-
-Thresholds thresholds_without_stick(const Motion& motion) {
-  // A filter before the recording leaves less noise than a reversal takes to get through rest.
-  const double band = motion.stick.never
-                          ? kRestNoise * motion.velocity_noise
-                          : std::max(kRestNoise * motion.velocity_noise, kReversalPart * typical_peak(motion));
-  return {band, band, 0};
-}
-
-namespace {
-
 /// Friction turns with the motion: a reversal in which it does not is noise of a slow velocity.
 std::vector<RawSlip> without_turns_of_noise(const Motion& motion, const std::vector<RawSlip>& slides) {
   std::vector<RawSlip> real;
@@ -167,6 +130,39 @@ std::vector<RawSlip> all_slides(const std::vector<double>& v, double band) {
 }
 
 }  // namespace
+
+Thresholds thresholds_of(const Motion& motion, int threads) {
+  Thresholds t;
+  if (motion.size() == 0) return t;
+  const double noise = motion.velocity_noise;
+  const double peak = typical_peak(motion, threads);
+  // Rounding of omega r - v_b is no motion.
+  double fastest = std::abs(motion.plateau_velocity);
+  for (const double v : motion.disc_velocity) fastest = std::max(fastest, std::abs(v));
+  fastest = std::max(fastest, std::abs(motion.constant_disc_velocity));
+  if (motion.stick.below > 0) return {motion.stick.below, motion.stick.below, peak > motion.stick.below ? peak : 0};
+  if (peak <= std::max(kSlipsOverError * noise, kRoundingPart * fastest))
+    return {kSlipsOverError * noise, kStickOverError * noise, 0};
+  t.peak = peak;
+  t.slip = std::max(kSlipsOverFastest * peak, std::min(kSlipsOverError * noise, kSlipAtMost * peak));
+  t.stick = std::max(kStickOverPeak * peak, std::min(kStickOverError * noise, kStickAtMost * peak));
+  return t;
+}
+
+std::vector<RawSlip> find_slips(const Motion& motion, const Thresholds& thresholds) {
+  if (thresholds.peak == 0) return {};
+  std::vector<RawSlip> slips = hysteresis(motion, thresholds);
+  drop_chatter(slips, thresholds.peak);
+  return slips;
+}
+
+Thresholds thresholds_without_stick(const Motion& motion) {
+  // A filter before the recording leaves less noise than a reversal takes to get through rest.
+  const double band = motion.stick.never
+                          ? kRestNoise * motion.velocity_noise
+                          : std::max(kRestNoise * motion.velocity_noise, kReversalPart * typical_peak(motion));
+  return {band, band, 0};
+}
 
 std::vector<RawSlip> find_slides(const Motion& motion) {
   std::vector<RawSlip> slides;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "spoilt_stretches.hpp"
+#include "phases.hpp"
 #include "tribofit/segmentation/cycles.hpp"
 
 namespace tribofit {

@@ -81,83 +81,16 @@ std::vector<double> left_by_windows(std::span<const double> signal, const Polyno
   return left;
 }
 
-/// Samples between two known kinks, [begin, end).
+/// Samples between two known corners, [begin, end), of n in all.
 struct Piece {
-  std::size_t begin = 0, end = 0;
+  std::size_t begin, end;
   bool holds(std::size_t first, std::size_t count) const { return first >= begin && first + count <= end; }
 };
 
-/// The piece of every sample, going up.
-class Pieces {
- public:
-  Pieces(std::span<const std::size_t> kinks, std::size_t n) : kinks_(kinks), n_(n) { now_.end = end_of(0); }
-  const Piece& at(std::size_t i) {
-    while (i >= now_.end && now_.end < n_) now_ = {now_.end, end_of(++next_)};
-    return now_;
-  }
-
- private:
-  std::size_t end_of(std::size_t k) const { return k < kinks_.size() ? std::min(kinks_[k], n_) : n_; }
-
-  std::span<const std::size_t> kinks_;
-  std::size_t n_, next_ = 0;
-  Piece now_;
-};
-
-}  // namespace
-
-LocalDerivatives local_derivatives(std::span<const double> signal, double step, std::size_t half,
-                                   std::span<const std::size_t> kinks) {
-  constexpr std::size_t kFewest = 7;
-  const std::size_t n = signal.size();
-  LocalDerivatives out;
-  out.value.assign(signal.begin(), signal.end());
-  for (auto* derivative : {&out.slope, &out.second_derivative, &out.slope_std_error, &out.second_derivative_std_error})
-    derivative->assign(n, 0.0);
-  if (n < kFewest) return out;
-  half = std::clamp<std::size_t>(half, kFewest / 2, (n - 1) / 2);
-  const std::size_t count = 2 * half + 1;
-  const PolynomialWindow about(count, kDegreeAbout), beside(count, kDegreeBeside);
-  const std::vector<double> left_about = left_by_windows(signal, about, count),
-                            left_beside = left_by_windows(signal, beside, count);
-  const Stencil middle(about, half);
-  std::vector<Stencil> places;  // of every position at the ends of the signal; five of them beside kinks
-  for (std::size_t at = 0; at < count; ++at) places.emplace_back(beside, at);
-  std::vector<Stencil> narrower;  // about samples beside known kinks
-  for (std::size_t h = kFewest / 2; h < half && !kinks.empty(); ++h)
-    narrower.emplace_back(PolynomialWindow(2 * h + 1, kDegreeAbout), h);
-  const double usual = median(left_about);
-  out.noise = std::sqrt(usual);
-  const std::array<std::size_t, 4> tried = {0, half / 2, count - 1 - half / 2, count - 1};
-  constexpr double kTooNear = 10;
-  Pieces pieces(kinks, n);
-  for (std::size_t i = 0; i < n; ++i) {
-    Piece piece = pieces.at(i);
-    const double widening = piece.end - piece.begin < count ? kTooNear : 1;
-    if (widening > 1) piece = {0, n};
-    const bool whole = i >= piece.begin + half && i + half < piece.end;
-    const Stencil* best = whole ? &middle : &places[i < piece.begin + half ? i - piece.begin : i + count - piece.end];
-    const std::size_t free =
-        std::min(piece.begin > 0 ? i - piece.begin : half, piece.end < n ? piece.end - 1 - i : half);
-    if (!whole && free < half && free >= kFewest / 2 && i >= free && i + free < n) best = &narrower[free - kFewest / 2];
-    double least = whole ? left_about[i - half] : 0;
-    if (whole && least > kKinkSquares * usual) {
-      for (const std::size_t at : tried) {
-        if (i < at || !piece.holds(i - at, count) || kBetterWindow * left_beside[i - at] > least) continue;
-        best = &places[at];
-        least = left_beside[i - at] / kBetterWindow;
-      }
-    }
-    out.value[i] = (*best)(0, signal, i);
-    out.slope[i] = (*best)(1, signal, i) / step;
-    out.second_derivative[i] = (*best)(2, signal, i) / (step * step);
-    out.slope_std_error[i] = widening * out.noise * best->noise_gain[1] / step;
-    out.second_derivative_std_error[i] = widening * out.noise * best->noise_gain[2] / (step * step);
-  }
-  return out;
+Piece piece_with(std::size_t i, std::span<const std::size_t> corners, std::size_t n) {
+  const auto next = std::upper_bound(corners.begin(), corners.end(), i);
+  return {next == corners.begin() ? 0 : *(next - 1), next == corners.end() ? n : std::min(*next, n)};
 }
-
-namespace {
 
 using Weights = std::vector<double>;
 
@@ -184,6 +117,56 @@ Weights over(const Weights& bell, const std::array<double, 3>& stencil) {
 }
 
 }  // namespace
+
+LocalDerivatives local_derivatives(std::span<const double> signal, double step, std::size_t half,
+                                   std::span<const std::size_t> corners) {
+  constexpr std::size_t kFewest = 7;
+  const std::size_t n = signal.size();
+  LocalDerivatives out;
+  out.value.assign(signal.begin(), signal.end());
+  for (auto* derivative : {&out.slope, &out.second_derivative, &out.slope_std_error, &out.second_derivative_std_error})
+    derivative->assign(n, 0.0);
+  if (n < kFewest) return out;
+  half = std::clamp<std::size_t>(half, kFewest / 2, (n - 1) / 2);
+  const std::size_t count = 2 * half + 1;
+  const PolynomialWindow about(count, kDegreeAbout), beside(count, kDegreeBeside);
+  const std::vector<double> left_about = left_by_windows(signal, about, count),
+                            left_beside = left_by_windows(signal, beside, count);
+  const Stencil middle(about, half);
+  std::vector<Stencil> places;  // of every position at the ends of the signal; five of them beside corners
+  for (std::size_t at = 0; at < count; ++at) places.emplace_back(beside, at);
+  std::vector<Stencil> narrower;  // about samples beside known corners
+  for (std::size_t h = kFewest / 2; h < half && !corners.empty(); ++h)
+    narrower.emplace_back(PolynomialWindow(2 * h + 1, kDegreeAbout), h);
+  const double usual = median(left_about);
+  out.noise = std::sqrt(usual);
+  const std::array<std::size_t, 4> tried = {0, half / 2, count - 1 - half / 2, count - 1};
+  constexpr double kTooNear = 10;
+  for (std::size_t i = 0; i < n; ++i) {
+    Piece piece = piece_with(i, corners, n);
+    const double widening = piece.end - piece.begin < count ? kTooNear : 1;
+    if (widening > 1) piece = {0, n};
+    const bool whole = i >= piece.begin + half && i + half < piece.end;
+    const Stencil* best = whole ? &middle : &places[i < piece.begin + half ? i - piece.begin : i + count - piece.end];
+    const std::size_t free =
+        std::min(piece.begin > 0 ? i - piece.begin : half, piece.end < n ? piece.end - 1 - i : half);
+    if (!whole && free < half && free >= kFewest / 2 && i >= free && i + free < n) best = &narrower[free - kFewest / 2];
+    double least = whole ? left_about[i - half] : 0;
+    if (whole && least > kCornerSquares * usual) {
+      for (const std::size_t at : tried) {
+        if (i < at || !piece.holds(i - at, count) || kBetterWindow * left_beside[i - at] > least) continue;
+        best = &places[at];
+        least = left_beside[i - at] / kBetterWindow;
+      }
+    }
+    out.value[i] = (*best)(0, signal, i);
+    out.slope[i] = (*best)(1, signal, i) / step;
+    out.second_derivative[i] = (*best)(2, signal, i) / (step * step);
+    out.slope_std_error[i] = widening * out.noise * best->noise_gain[1] / step;
+    out.second_derivative_std_error[i] = widening * out.noise * best->noise_gain[2] / (step * step);
+  }
+  return out;
+}
 
 SmoothedDerivatives smoothed_derivatives(std::span<const double> signal, double step, std::size_t half) {
   SmoothedDerivatives out;

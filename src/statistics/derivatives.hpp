@@ -15,15 +15,15 @@ struct LocalDerivatives {
 
 /// Derivatives by local polynomials of least squares over 2 half + 1 samples at a distance of `step` (A. Savitzky, M.
 /// J. E. Golay, Anal. Chem. 36 (1964) 1627, doi:10.1021/ac60214a047), of fourth degree about a sample. Where the signal
-/// has a kink nearby, of third degree over a window that ends before it or begins behind it: of several windows that
+/// has a corner nearby, of third degree over a window that ends before it or begins behind it: of several windows that
 /// hold the sample the one that leaves least (I. Gijbels, A. Lambert, P. Qiu, J. Nonparametric Statistics 19 (2007)
 /// 77, doi:10.1080/10485250601097312). Errors are those of independent noise, as large as most windows show it.
 /// A signal shorter than a window: shorter windows; fewer than 7 samples: all derivatives are 0.
-/// kinks: first samples behind kinks that are known, ascending: windows beside one are narrower, none reaches over it,
-/// and where two are too near for a window between them, errors are ten times as large. Cost: proportional to samples
-/// times window.
+/// corners: first samples behind corners that are known, ascending: windows beside one are narrower, none reaches over
+/// it, and where two are too near for a window between them, errors are ten times as large. Cost: proportional to
+/// samples times window.
 LocalDerivatives local_derivatives(std::span<const double> signal, double step, std::size_t half,
-                                   std::span<const std::size_t> kinks = {});
+                                   std::span<const std::size_t> corners = {});
 
 /// A sampled signal and its first two derivatives, all three as means over the same short stretch with the same
 /// weights: what is linear in signal and derivatives holds of the means exactly, however fast the signal turns.

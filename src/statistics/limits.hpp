@@ -65,9 +65,9 @@ inline constexpr double kSamplesPerPeriod = 8;
 
 // ---- local derivatives
 
-/// Squares that a window leaves over the usual ones, from which there is a kink in it, and over those of a window
+/// Squares that a window leaves over the usual ones, from which there is a corner in it, and over those of a window
 /// beside it that is taken instead: by chance one window in a thousand.
-inline constexpr double kKinkSquares = 3, kBetterWindow = 2;
+inline constexpr double kCornerSquares = 3, kBetterWindow = 2;
 /// Standard deviations by which a lone sample is off its neighbours (noise alone never is), and that over what the
 /// signal does beside: at a turning point it is a third.
 inline constexpr double kLoneSample = 6, kLoneSteepness = 3;

@@ -272,11 +272,15 @@ void find_ramps(std::span<const double> t, double noise, std::vector<Stretch>& s
     stretches[n - 1].on_ramp = may_bend(t, stretches[n - 1], slope(n - 1) - slope(n - 2), noise);
 }
 
+/// Where two lines meet, from near that time.
+double meeting_of(const Stretch& one, const Stretch& two, double near) {
+  return near - (one.line.at(near) - two.line.at(near)) / (one.line.slope() - two.line.slope());
+}
+
 /// Where two lines meet, if that is near the samples between which the corner lies.
 double corner_between(std::span<const double> t, const Stretch& one, const Stretch& two) {
   const double early = t[two.begin - 1], late = t[two.begin], middle = 0.5 * (early + late);
-  const double apart = one.line.slope() - two.line.slope();
-  const double meet = middle - (one.line.at(middle) - two.line.at(middle)) / apart;
+  const double meet = meeting_of(one, two, middle);
   const double near = kNearCorner * (late - early);
   return std::isfinite(meet) && meet > early - near && meet < late + near ? meet : middle;
 }
@@ -315,9 +319,7 @@ void settle_levels(const std::vector<Stretch>& stretches, std::span<const double
 void move_corners(std::span<const double> t, std::span<const double> x, std::size_t stride,
                   std::vector<Stretch>& stretches) {
   for (std::size_t i = 1; i < stretches.size(); ++i) {
-    const double at = t[stretches[i].begin];
-    const double apart = stretches[i - 1].line.slope() - stretches[i].line.slope();
-    const double meet = at - (stretches[i - 1].line.at(at) - stretches[i].line.at(at)) / apart;
+    const double meet = meeting_of(stretches[i - 1], stretches[i], t[stretches[i].begin]);
     const auto found = static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), meet) - t.begin());
     const std::size_t corner = stretches[i].begin, back = std::min(corner, 2 * stride);
     const std::size_t low = std::max(stretches[i - 1].begin + kFewestOfPiece, corner - back);

@@ -41,29 +41,6 @@ StraightLine fit_line(std::span<const double> x, std::span<const double> y, std:
   return line;
 }
 
-void Remainder::add(double residual) {
-  squares += residual * residual;
-  products += residual * last;
-  count += 1;
-  last = residual;
-}
-
-Remainder& Remainder::operator+=(const Remainder& other) {
-  squares += other.squares;
-  products += other.products;
-  count += other.count;
-  last = other.last;
-  return *this;
-}
-
-double Remainder::correlation(double most) const {
-  return squares > 0 ? std::clamp(products / squares, 0.0, most) : 0;
-}
-
-double variance_inflation(double rho) {
-  return (1 + rho) / (1 - rho);
-}
-
 Parabola fit_parabola(std::span<const double> samples) {
   Parabola out;
   out.count = static_cast<double>(samples.size());
@@ -83,16 +60,12 @@ Parabola fit_parabola(std::span<const double> samples) {
 }
 
 Remainder remainder_about(const Parabola& parabola, std::span<const double> samples) {
-  // As add() would, in registers.
-  double squares = 0, products = 0, last = 0;
+  Remainder out;
   const double centre = parabola.centre();
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const double residual = samples[i] - parabola.at(static_cast<double>(i) - centre);
-    squares += residual * residual;
-    products += residual * last;
-    last = residual;
+    out.add(samples[i] - parabola.at(static_cast<double>(i) - centre));
   }
-  return {squares, products, static_cast<double>(samples.size()), last};
+  return out;
 }
 
 namespace {

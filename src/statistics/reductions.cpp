@@ -5,12 +5,6 @@
 
 namespace tribofit {
 
-namespace {
-
-constexpr std::size_t kMostBlocks = std::size_t{1} << 17;
-
-}  // namespace
-
 Extremes extremes(std::span<const double> x) {
   Extremes strands[4] = {{x[0], x[0]}, {x[0], x[0]}, {x[0], x[0]}, {x[0], x[0]}};  // they hide the latency
   std::size_t i = 0;
@@ -31,6 +25,7 @@ std::vector<double> thinned(std::span<const double> values, std::size_t most) {
 }
 
 std::size_t block_length(std::span<const double> signal) {
+  constexpr std::size_t kMostBlocks = std::size_t{1} << 17;
   const std::size_t n = signal.size();
   const std::size_t least = std::max<std::size_t>(1, (n + kMostBlocks - 1) / kMostBlocks);
   const std::size_t starts = std::min<std::size_t>(n, 8192);

@@ -46,28 +46,22 @@ Resolved resolved_periodogram(std::span<const double> series, const std::vector<
   return out;
 }
 
-/// Spectra of slow noise; the covariance of a series with that of 1/f noise is covariance_of_flicker().
-std::vector<double> flicker(const std::vector<double>& frequency) {
-  std::vector<double> out;
-  for (const double f : frequency) out.push_back(1 / f);
-  return out;
-}
-
-std::vector<double> autoregression(const std::vector<double>& frequency, double memory) {
-  std::vector<double> out;
-  for (const double f : frequency) {
+/// Spectrum of slow noise: of an autoregression of that memory, or 1/f (0), with covariance_of_flicker().
+std::vector<double> slow_spectrum(std::vector<double> frequency, double memory = 0) {
+  for (double& f : frequency) {
     const double swing = std::cos(2 * std::numbers::pi * f);
-    out.push_back((1 - memory * memory) / (1 - 2 * memory * swing + memory * memory));
+    f = memory > 0 ? (1 - memory * memory) / (1 - 2 * memory * swing + memory * memory) : 1 / f;
   }
-  return out;
+  return frequency;
 }
 
-std::vector<double> covariance_of_flicker(std::size_t n) {
+/// power: a of the noise, see slow_noise().
+std::vector<double> covariance_of_flicker(std::size_t n, double power) {
   const std::size_t longer = std::bit_ceil(kLonger * n);
   std::vector<double> spectrum(longer, 0.0), out(n);
   for (std::size_t j = 1; j < longer; ++j) spectrum[j] = 1 / static_cast<double>(std::min(j, longer - j));
   const auto covariance = fourier_lines(spectrum, longer);
-  for (std::size_t k = 0; k < n; ++k) out[k] = covariance[k].real();
+  for (std::size_t k = 0; k < n; ++k) out[k] = covariance[k].real() * power;
   return out;
 }
 
@@ -146,11 +140,11 @@ SlowNoise slow_noise_of(std::span<const double> series) {
   for (const double x : series) squares += x * x;
   for (const double x : seen.power) left += x;
   if (!(left > kRounding * squares)) return {};
-  const Likeliest of_flicker = robust_fit(seen, flicker(seen.frequency));
+  const Likeliest of_flicker = robust_fit(seen, slow_spectrum(seen.frequency));
   Likeliest best;
   double memory = 0;
   for (const double m : kMemories) {
-    const Likeliest own = robust_fit(seen, autoregression(seen.frequency, m));
+    const Likeliest own = robust_fit(seen, slow_spectrum(seen.frequency, m));
     if (own.log_likelihood > best.log_likelihood) best = own, memory = m;
   }
   SlowNoise out;
@@ -159,8 +153,7 @@ SlowNoise slow_noise_of(std::span<const double> series) {
     for (std::size_t k = 0; k < n; ++k) out.covariance.push_back(best.slow * std::pow(memory, static_cast<double>(k)));
   } else if (of_flicker.slow > 0) {
     out.is_flicker = true;
-    out.covariance = covariance_of_flicker(n);
-    for (double& c : out.covariance) c *= of_flicker.slow;
+    out.covariance = covariance_of_flicker(n, of_flicker.slow);
   }
   return out;
 }
@@ -185,8 +178,7 @@ double SlowNoise::variance_within() const {
 SlowNoise slow_noise(std::span<const double> series, double known_flicker) {
   SlowNoise out = slow_noise_of(series);
   if (!(known_flicker > 0) || series.empty()) return out;
-  std::vector<double> known = covariance_of_flicker(series.size());
-  for (double& c : known) c *= known_flicker;
+  std::vector<double> known = covariance_of_flicker(series.size(), known_flicker);
   if (out.covariance.empty() || out.covariance[0] < known[0]) out = {std::move(known), true};
   return out;
 }
@@ -194,10 +186,10 @@ SlowNoise slow_noise(std::span<const double> series, double known_flicker) {
 double flicker_power(std::span<const std::span<const double>> stretches) {
   if (stretches.size() < kFewestStretches || stretches.front().size() < kFewestOfLine) return 0;
   const Resolved seen = median_periodogram(stretches);
-  const Likeliest of_flicker = likeliest(seen, flicker(seen.frequency));
+  const Likeliest of_flicker = likeliest(seen, slow_spectrum(seen.frequency));
   if (of_flicker.gain < kPriceOfParameter) return 0;
   for (const double memory : kMemories) {
-    const Likeliest other = likeliest(seen, autoregression(seen.frequency, memory));
+    const Likeliest other = likeliest(seen, slow_spectrum(seen.frequency, memory));
     if (other.log_likelihood > of_flicker.log_likelihood + kClearlyLikelier) return 0;
   }
   return of_flicker.slow;

@@ -38,10 +38,6 @@ double power_at(const std::vector<double>& values, double frequency) {
   return std::norm(sum);
 }
 
-struct Line {
-  double frequency = 0, amplitude = 0;
-};
-
 // Short slips are pulses, whose harmonics can exceed the fundamental: a line of half the height at a half, a third ...
 // a tenth of the strongest is taken for what it is.
 std::size_t fundamental_bin(const std::vector<double>& lines, std::size_t strongest) {
@@ -55,7 +51,7 @@ std::size_t fundamental_bin(const std::vector<double>& lines, std::size_t strong
   return strongest;
 }
 
-Line strongest_line(std::span<const double> signal, double step) {
+SpectralPeak strongest_line(std::span<const double> signal, double step) {
   const Spectrum spectrum = amplitude_spectrum(signal, step);
   const auto& lines = spectrum.amplitude;
   if (lines.size() <= kFewestPeriods + 1) return {};
@@ -79,9 +75,9 @@ double block_transmission(double frequency, double block) {
 }
 
 /// Of means over blocks, what they take away given back.
-Line strongest_line(std::span<const double> signal, double step, std::size_t block) {
+SpectralPeak strongest_line(std::span<const double> signal, double step, std::size_t block) {
   const BlockMeans reduced = block_means(signal, block, step);
-  Line line = strongest_line(reduced.mean, reduced.step);
+  SpectralPeak line = strongest_line(reduced.mean, reduced.step);
   line.amplitude /= block_transmission(line.frequency, reduced.length > 1 ? reduced.step : 0);
   return line;
 }
@@ -146,9 +142,9 @@ SpectralPeak fundamental(std::span<const double> signal, double step, std::size_
   constexpr std::size_t most = kMostTransformedAtOnce;
   // The whole record, reduced, sees low lines; one stretch at the full rate sees what the reduction would have lost.
   const std::size_t reduction = (signal.size() + most - 1) / most;
-  Line line = strongest_line(signal, step, reduction);
+  SpectralPeak line = strongest_line(signal, step, reduction);
   if (reduction > 1) {
-    const Line fast = strongest_line(signal.first(std::min(signal.size(), most)), step);
+    const SpectralPeak fast = strongest_line(signal.first(std::min(signal.size(), most)), step);
     if (fast.frequency > 0.5 / (step * static_cast<double>(reduction)) && fast.amplitude > line.amplitude) {
       const double block = 1 / (2 * kSamplesPerPeriod * fast.frequency * step);
       line = strongest_line(signal, step, std::max<std::size_t>(1, static_cast<std::size_t>(block)));

@@ -38,7 +38,6 @@ std::vector<std::size_t> drawn_samples(std::span<const double> values, std::size
     std::iota(drawn.begin(), drawn.end(), std::size_t{0});
     return drawn;
   }
-  drawn.reserve(kPerBin * bins);
   for (std::size_t k = 0; k < bins; ++k) draw_stretch(values, n * k / bins, n * (k + 1) / bins, drawn);
   return drawn;
 }

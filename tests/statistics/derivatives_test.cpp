@@ -44,7 +44,7 @@ TEST(LocalDerivatives, APolynomialComesBackAtTheEndsToo) {
 }
 
 /// A ramp whose slope jumps: a plain window would see the jump from its half away.
-TEST(LocalDerivatives, AKinkStaysWhereItIs) {
+TEST(LocalDerivatives, ACornerStaysWhereItIs) {
   const auto ramp = [](double t) { return t < 0.1 ? t : 0.1 - 4 * (t - 0.1); };
   const LocalDerivatives found = local_derivatives(sampled(400, ramp, 1e-6), kStep, 15);
   for (std::size_t i = 20; i < 380; ++i) {

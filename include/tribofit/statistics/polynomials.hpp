@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -26,16 +27,25 @@ StraightLine fit_line(std::span<const double> x, std::span<const double> y, std:
 struct Remainder {
   double squares = 0, products = 0;  ///< sums of r_i^2 and of r_i r_(i-1)
   double count = 0, last = 0;        ///< of samples; the last residual
-  void add(double residual);
+  void add(double residual) {
+    squares += residual * residual;
+    products += residual * last;
+    count += 1;
+    last = residual;
+  }
   /// Another stretch: its first residual is no neighbour of the last one here.
-  Remainder& operator+=(const Remainder& other);
+  Remainder& operator+=(const Remainder& other) {
+    return *this = {squares + other.squares, products + other.products, count + other.count, other.last};
+  }
   /// Correlation of neighbours, between 0 and `most` < 1.
-  double correlation(double most) const;
+  double correlation(double most) const { return squares > 0 ? std::clamp(products / squares, 0.0, most) : 0; }
 };
 
 /// By how much noise whose neighbours are correlated by rho, and by rho^k over k samples, makes the variance of a mean
 /// larger: (1 + rho) / (1 - rho).
-double variance_inflation(double rho);
+inline double variance_inflation(double rho) {
+  return (1 + rho) / (1 - rho);
+}
 
 /// Parabola of least squares through samples at equal distances, in orthogonal polynomials:
 /// y(x) = mean + slope x + curvature (x^2 - shift), x = i - (n-1)/2 samples from the middle. The three coefficients are
