@@ -10,8 +10,6 @@
 #include "results.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/output/whole_file.hpp"
-#include "tribofit/report/figures.hpp"
-#include "tribofit/report/pooled.hpp"
 #include "typed_values.hpp"
 
 using namespace tribofit;

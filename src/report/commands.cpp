@@ -9,40 +9,15 @@
 #include "tribofit/report/page.hpp"
 
 namespace tribofit {
-namespace {
-
-/// The words of a command; a quoted one stays whole.
-std::vector<std::string> split_command(const std::string& command) {
-  std::vector<std::string> words(1);
-  bool quoted = false;
-  for (const char c : command) {
-    if (c == '\'') quoted = !quoted;
-    if (c == ' ' && !quoted) {
-      words.emplace_back();
-    } else {
-      words.back() += c;
-    }
-  }
-  return words;
-}
-
-bool contains(const std::vector<std::string>& words, const std::string& word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
-}
-
-}  // namespace
 
 std::string shell_quoted(const std::string& argument) {
   constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=:,+@%";
   if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos) return argument;
   const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
   if (std::any_of(argument.begin(), argument.end(), is_control)) {  // bash, zsh and ksh read these
-    const std::string escaped = replaced(replaced(argument, "\\", "\\\\"), "'", "\\'");
-    return "$'" + printable(escaped) + "'";
+    return "$'" + printable(replaced(replaced(argument, "\\", "\\\\"), "'", "\\'")) + "'";
   }
-  std::string text = "'";
-  for (const char c : argument) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
+  return "'" + replaced(argument, "'", "'\\''") + "'";
 }
 
 std::string command_line(const std::vector<std::string>& words, const std::vector<std::string>& inputs) {
@@ -57,11 +32,14 @@ std::string command_line(const ReportOptions& options, const std::vector<std::st
 }
 
 std::vector<std::string> words_of(std::vector<std::string> words, const std::vector<std::string>& arguments,
-                                  const std::vector<std::string>& flags, const std::vector<std::string>& valued) {
+                                  const std::vector<std::string>& dropped) {
+  const auto is_dropped = [&](const std::string& word) {
+    return std::find(dropped.begin(), dropped.end(), word) != dropped.end();
+  };
   for (std::size_t k = 0; k < arguments.size(); ++k) {
-    if (contains(valued, arguments[k])) {
+    if (is_dropped(arguments[k] + "=")) {
       ++k;
-    } else if (!contains(flags, arguments[k])) {
+    } else if (!is_dropped(arguments[k])) {
       words.push_back(arguments[k]);
     }
   }
@@ -69,24 +47,26 @@ std::vector<std::string> words_of(std::vector<std::string> words, const std::vec
 }
 
 std::string diagnose_command(const std::vector<std::string>& arguments, const std::string& path) {
-  return command_line(words_of({"diagnose"}, arguments, {"--profile"}, {"--protocol"}), {path});
+  return command_line(words_of({"diagnose"}, arguments, {"--profile", "--protocol="}), {path});
 }
 
-std::vector<Suggestion> ways_to_look(const std::string& verb, const std::vector<std::string>& arguments,
-                                     const std::string& path, bool report_written) {
-  if (!has_report_page()) return {};
-  const std::vector<std::string> begin = verb.empty() ? std::vector<std::string>{} : std::vector{verb};
-  const std::string page = std::filesystem::path(path).stem().string() + ".html";
-  std::vector<Suggestion> ways;
-  if (!report_written) {
-    ways.push_back({"to see it as a page of charts",
-                    command_line(joined(words_of(begin, arguments), {"--report", page}), {path})});
+void add_ways_to_look(const std::string& verb, const std::string& path, const ReportOptions& options, Report& report) {
+  if (!has_report_page()) return;
+  if (!options.report_written) {
+    const std::string page = std::filesystem::path(path).stem().string() + ".html";
+    const std::vector<std::string> words = words_of({}, options.arguments);
+    report.next.push_back(
+        {"to see it as a page of charts",
+         command_line(joined(verb.empty() ? words : joined({verb}, words), {"--report", page}), {path})});
   }
-  ways.push_back(
-      {"to switch effects on and off in a browser",
-       command_line(words_of({"explore"}, arguments, {"--profile"}, {"--protocol", "--confirm", "--time-limit"}),
-                    {path})});
-  return ways;
+  const std::vector<std::string> other_verbs = {"--profile", "--protocol=", "--confirm=", "--time-limit="};
+  report.next.push_back({"to switch effects on and off in a browser",
+                         command_line(words_of({"explore"}, options.arguments, other_verbs), {path})});
+}
+
+Suggestion first_of(std::initializer_list<NextStep> steps) {
+  const auto next = std::find_if(steps.begin(), steps.end(), [](const NextStep& step) { return step.is_next; });
+  return next == steps.end() ? Suggestion{} : Suggestion{next->reason, next->command};
 }
 
 std::vector<std::string> joined(std::vector<std::string> words, const std::vector<std::string>& more) {
@@ -105,27 +85,31 @@ std::string csv_folder_for(const std::string& path) {
 
 std::string folded_command(const std::string& command, std::size_t width) {
   constexpr std::size_t kIndent = 2, kContinued = 6;
-  std::string text(kIndent, ' ');
-  std::size_t column = kIndent;
-  std::vector<std::string> parts;  // an option stays with its value
-  for (const std::string& word : split_command(command)) {
-    if (!parts.empty() && parts.back().starts_with("--") && parts.back().find(' ') == std::string::npos &&
-        !word.starts_with("-")) {
-      parts.back() += " " + word;
+  std::vector<std::string> parts(1);  // words; one in quotes is whole, and an option stays with its value
+  bool quoted = false;
+  for (std::size_t i = 0; i < command.size(); ++i) {
+    if (command[i] == '\'') quoted = !quoted;
+    const std::string& part = parts.back();
+    const bool is_option = part.starts_with("--") && part.find(' ') == std::string::npos;
+    if (command[i] == ' ' && !quoted && !(is_option && !command.substr(i + 1).starts_with('-'))) {
+      parts.emplace_back();
     } else {
-      parts.push_back(word);
+      parts.back() += command[i];
     }
   }
-  for (const std::string& word : parts) {
-    const bool first = column == kIndent;
-    const std::size_t length = displayed(word);
-    if (!first && column + 1 + length + 2 > width) {
-      text += " \\\n" + std::string(kContinued, ' ') + word;
-      column = kContinued + length;
-      continue;
+  std::string text(kIndent, ' ');
+  std::size_t column = kIndent;
+  for (const std::string& part : parts) {
+    const std::size_t length = displayed(part);
+    if (column > kIndent && column + 1 + length + 2 > width) {
+      text += " \\\n" + std::string(kContinued, ' ');
+      column = kContinued;
+    } else if (column > kIndent) {
+      text += ' ';
+      ++column;
     }
-    text += (first ? "" : " ") + word;
-    column += length + (first ? 0 : 1);
+    text += part;
+    column += length;
   }
   return text;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -15,15 +16,21 @@ std::string command_line(const std::vector<std::string>& words, const std::vecto
 /// where there is one.
 std::string command_line(const ReportOptions& options, const std::vector<std::string>& more, const std::string& path);
 
-/// `verb` and the user's own options; those named in `flags` are left out, and those in `valued` with their values.
+/// `verb` and the user's own options but for those `dropped`: flags, and "--protocol=" with its value.
 std::vector<std::string> words_of(std::vector<std::string> verb, const std::vector<std::string>& arguments,
-                                  const std::vector<std::string>& flags = {},
-                                  const std::vector<std::string>& valued = {});
+                                  const std::vector<std::string>& dropped = {});
 
-/// The page and the workbench for the same trace: `arguments` without verb and outputs as that command takes them.
-/// report: the file of the page; empty: it is written already. verb: "diagnose", or empty for identify itself.
-std::vector<Suggestion> ways_to_look(const std::string& verb, const std::vector<std::string>& arguments,
-                                     const std::string& path, bool report_written);
+/// Adds the page and the workbench for the same trace to what can be done next, as far as they are not made yet. verb:
+/// "diagnose", or empty for identify itself.
+void add_ways_to_look(const std::string& verb, const std::string& path, const ReportOptions& options, Report& report);
+
+/// What to do next where that is the case.
+struct NextStep {
+  bool is_next;
+  std::string reason, command;
+};
+/// The first that is.
+Suggestion first_of(std::initializer_list<NextStep> steps);
 
 /// `words` with `more` behind them.
 std::vector<std::string> joined(std::vector<std::string> words, const std::vector<std::string>& more);

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -7,7 +5,6 @@
 
 #include "diagnosis/conclusions.hpp"
 #include "diagnosis_sentences.hpp"
-#include "numbers.hpp"
 #include "report/charts/diagnosis_charts.hpp"
 #include "report_parts.hpp"
 #include "segmentation/counts.hpp"
@@ -42,22 +39,19 @@ std::vector<std::string> distinct(const DiagnosedTraces& result, Text text) {
   return out;
 }
 
-/// The distinct values of one condition over the traces, "1, 2, 4, 8 rpm"; empty where none is known.
-std::string condition(const DiagnosedTraces& result, const ConditionInfo& which) {
-  const std::vector<std::string> values = distinct(result, [&](const Identification& trace) {
-    const Condition& c = trace.motion.conditions.*which.member;
-    return c.known() ? brief(c.value / which.si) : "";
-  });
-  return values.empty() ? "" : fmt::format("{} {}", fmt::join(values, ", "), which.unit);
-}
-
 /// How a text begins: what was diagnosed; notes, warnings and problems of the data, each once, with the trace's name
 /// where there are several.
 ReportSection traces_section(const DiagnosedTraces& result) {
   ReportSection section{"record", "", {}, Medium::terminal};
   const bool one = result.traces.size() == 1;
   std::vector<std::string> known = {enumerated(distinct(result, kind_text))};
-  for (const ConditionInfo& which : condition_infos) known.push_back(condition(result, which));
+  for (const ConditionInfo& which : condition_infos) {
+    const std::vector<std::string> values = distinct(result, [&](const Identification& trace) {
+      const Condition& c = trace.motion.conditions.*which.member;
+      return c.known() ? brief(c.value / which.si) : "";
+    });
+    if (!values.empty()) known.push_back(fmt::format("{} {}", fmt::join(values, ", "), which.unit));
+  }
   known.push_back(amount_of_data(result));
   std::erase(known, "");
   section.text(ReportText::Kind::title,
@@ -86,21 +80,21 @@ ReportTable ladder_table(const DiagnosedTraces& result) {
   const std::string unit = level_unit(result);
   ReportTable table("Held-out error (RMSE)");
   table.text({"", "", ""}).text({""}, 1).numbers({""});
-  double largest = d.floor_rmse;
-  for (std::size_t k = 0; k < d.ladder.size(); ++k) {
-    const Rung& rung = d.ladder[k];
-    const double removed = k == 0 ? std::nan("") : removed_at(d, k), error = rung.held_out_std_error;
-    const int places = places_for(error);
-    table.rows.push_back({fmt::format("{}  {}", k, k == 0 ? law_text(d) : "+ " + spelled(result, rung.added)), "",
-                          (error > 0 ? fixed(rung.held_out_rmse, places) : significant(rung.held_out_rmse, 3)) + unit,
-                          error > 0 ? "+/- " + fixed(error, places) + unit : "",
+  const auto add = [&](std::string name, double value, const std::string& shown, std::string error, double removed) {
+    table.rows.push_back({std::move(name), "", shown + unit, std::move(error),
                           std::isfinite(removed) ? fmt::format("{:.0f} %", std::floor(100 * removed)) : ""});
-    table.bars.values.push_back(rung.held_out_rmse);
-    largest = std::fmax(largest, rung.held_out_rmse);
+    table.bars.values.push_back(value);
+    table.bars.full = std::fmax(table.bars.full, value);
+  };
+  for (std::size_t k = 0; k < d.ladder.size(); ++k) {
+    const double value = d.ladder[k].held_out_rmse, error = d.ladder[k].held_out_std_error;
+    const int places = places_for(error);
+    add(fmt::format("{}  {}", k, k == 0 ? law_text(d) : "+ " + spelled(result, d.ladder[k].added)), value,
+        error > 0 ? fixed(value, places) : significant(value, 3), error > 0 ? "+/- " + fixed(error, places) + unit : "",
+        k == 0 ? std::nan("") : removed_at(d, k));
   }
-  table.rows.push_back({"   noise floor", "", significant(d.floor_rmse, 3) + unit, "", ""});
-  table.bars.values.push_back(d.floor_rmse);
-  table.bars.column = 1, table.bars.full = largest, table.bars.pale = d.floor_rmse;
+  add("   noise floor", d.floor_rmse, significant(d.floor_rmse, 3), "", std::nan(""));
+  table.bars.column = 1, table.bars.pale = d.floor_rmse;
   table.bars.pale_name = "noise floor: noise and scatter from cycle to cycle";
   table.bars.full_name = "error above it";
   if (d.ladder.size() > 1) table.bars.full_name += "; %: share of its square that is removed";
@@ -136,12 +130,12 @@ void add_errors(const DiagnosedTraces& result, ReportSection& section) {
 }
 
 /// The final model whole: the law with its parameters, then what was found beside it, and the equations.
-ReportSection law_section(const DiagnosedTraces& result) {
+ReportSection law_section(const DiagnosedTraces& result, const Motion& motion) {
   ReportSection section{"whole-law", "", {}, Medium::terminal};
-  if (result.traces.empty()) return section;
-  const Motion& motion = result.traces.front().motion;
+  static const std::vector<FitParameter> none;
   const Fit* fit = result.best < result.fits.size() ? &result.fits[result.best] : nullptr;
-  if (fit != nullptr && !fit->parameters.empty()) {
+  const std::vector<FitParameter>& fitted = fit != nullptr ? fit->parameters : none;
+  if (!fitted.empty()) {
     section.heading("The whole law: " + curve_name(*fit));
     section.add(parameter_table(*fit, motion, false));
     section.plain(std::string(describe(fit->model.law()).equation));
@@ -153,11 +147,9 @@ ReportSection law_section(const DiagnosedTraces& result) {
     if (finding == nullptr || finding->parameters.empty()) continue;
     const std::string equation = info_of(result, rung.added).equation;
     if (!equation.empty()) equations.push_back(spelled(result, rung.added) + ": " + equation);
-    if (fit != nullptr && std::any_of(fit->parameters.begin(), fit->parameters.end(),
-                                      [&](const FitParameter& p) { return p.effect.starts_with(finding->key); })) {
-      continue;
-    }
-    for (FitParameter p : finding->parameters) {
+    const bool in_fit = std::any_of(fitted.begin(), fitted.end(),
+                                    [&](const FitParameter& p) { return p.effect.starts_with(finding->key); });
+    for (FitParameter p : in_fit ? none : finding->parameters) {
       p.effect = finding->key;
       beside.push_back(std::move(p));
     }
@@ -244,42 +236,31 @@ void draw(const DiagnosedTraces& result, TraceSections& sections) {
   const std::vector<const Fit*> curves = drawn_curves(models, result.rungs);
   for (std::size_t k = 0; k < drawn; ++k) {
     const Identification& trace = result.traces[k];
-    if (drawn > 1) {
-      for (ReportSection* s : {&sections.trace, &sections.law, &sections.errors, &sections.cycles}) {
-        s->heading(trace.path);
-      }
+    for (ReportSection* s : sections.all()) {
+      if (drawn > 1) s->heading(trace.path);
     }
     sections.add_trace(DrawnTrace(trace, models, curves, fmt::format("t{}", k + 1), 1 / static_cast<double>(drawn), k));
   }
-  if (count > drawn) {
-    sections.trace.plain(fmt::format("The first {} of {} traces are drawn.", drawn, count));
-  }
+  if (count > drawn) sections.trace.plain(fmt::format("The first {} of {} traces are drawn.", drawn, count));
 }
 
 }  // namespace
 
 Report report_of(const DiagnosedTraces& result, const ReportOptions& options) {
-  const Motion none;
+  static const Motion none;
   const Motion& motion = result.traces.empty() ? none : result.traces.front().motion;
-  const bool one = result.traces.size() == 1;
+  const Identification* one = result.traces.size() == 1 ? &result.traces.front() : nullptr;
   Report report = titled_report(
-      "diagnosis",
-      one ? file_name(result.traces.front().path) : fmt::format("{} traces together", result.traces.size()),
+      "diagnosis", one != nullptr ? file_name(one->path) : fmt::format("{} traces together", result.traces.size()),
       "Diagnosis", diagnosis_verdict(result));
   for (const Identification& trace : result.traces) {
     report.warnings.insert(report.warnings.end(), trace.warnings.begin(), trace.warnings.end());
   }
   report.facts = model_facts("final model", result.fits, result.best, motion);
   report.next = {next_after_diagnosis(result, options)};
-  if (one) {
-    const Facts record = facts_of(result.traces.front());
-    report.facts.insert(report.facts.end(), record.begin(), record.end());
-  }
-  if (one && result.diagnosis.verdict != Verdict::not_enough_data) {
-    for (Suggestion& way :
-         ways_to_look("diagnose", options.arguments, result.traces.front().path, options.report_written)) {
-      report.next.push_back(std::move(way));
-    }
+  if (one != nullptr) add_facts(*one, report);
+  if (one != nullptr && result.diagnosis.verdict != Verdict::not_enough_data) {
+    add_ways_to_look("diagnose", one->path, options, report);
   }
   TraceSections sections;
   if (options.charts) draw(result, sections);
@@ -287,9 +268,8 @@ Report report_of(const DiagnosedTraces& result, const ReportOptions& options) {
   add_fits(result.fits, result.best, motion, options.instruments_declared, sections.law);
   if (!result.fits.empty()) sections.law.add(profile_charts(result.fits[result.best], motion, "best"));
   sections.add_sources();
-  for (ReportSection* s : {&sections.trace, &sections.law, &sections.errors, &sections.cycles})
-    s->medium = Medium::page;
-  report.add({traces_section(result), diagnosis_section(result, motion), law_section(result), sections.trace,
+  for (ReportSection* s : sections.all()) s->medium = Medium::page;
+  report.add({traces_section(result), diagnosis_section(result, motion), law_section(result, motion), sections.trace,
               sections.law, sections.errors, sections.cycles,
               run_section(report, diagnose_command(result, options), result.traces)});
   return report;

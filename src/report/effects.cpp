@@ -1,11 +1,8 @@
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
-#include <tuple>
-#include <utility>
+#include <cmath>
 
-#include "numbers.hpp"
+#include "report_parts.hpp"
+#include "statistics/reductions.hpp"
 #include "tribofit/friction/state_evolution.hpp"
 #include "tribofit/report/terminal.hpp"
 #include "tribofit/study/fingerprint.hpp"
@@ -17,21 +14,23 @@ constexpr std::size_t kNames = 15;  // columns of names on a terminal
 
 /// What an effect needs beyond friction and velocity: in short, and in full. An empty name is left out.
 std::string channels_text(const Channels& needs, bool in_full) {
-  const std::array<std::tuple<bool, const char*, const char*>, 10> all = {
-      {{needs.acceleration, "acceleration", "block acceleration (from v_b)"},
-       {needs.angle, "disc angle", "disc angle (measured, or from the speed), two revolutions"},
-       {needs.distance, "distance", "sliding distance (from v_r)"},
-       {needs.reversal_distance, "reversals", "distance since a reversal (from v_r), four reversals"},
-       {needs.load, "load", "a load that varies"},
-       {needs.force && !needs.load, "load", "the normal force, or friction as a force"},
-       {needs.temperature, "temperature", "temperature"},
-       {needs.stick_time, "stick time", "stick times that vary (from the cycles)"},
-       {needs.lead, "stick", "v_r in stick"},
-       {needs.plateau, needs.lead ? "" : "stick", "v_b in stick, with radius and speed stated"}}};
+  const struct {
+    bool is_needed;
+    std::string brief, full;
+  } all[] = {{needs.acceleration, "acceleration", "block acceleration (from v_b)"},
+             {needs.angle, "disc angle", "disc angle (measured, or from the speed), two revolutions"},
+             {needs.distance, "distance", "sliding distance (from v_r)"},
+             {needs.reversal_distance, "reversals", "distance since a reversal (from v_r), four reversals"},
+             {needs.load, "load", "a load that varies"},
+             {needs.force && !needs.load, "load", "the normal force, or friction as a force"},
+             {needs.temperature, "temperature", "temperature"},
+             {needs.stick_time, "stick time", "stick times that vary (from the cycles)"},
+             {needs.lead, "stick", "v_r in stick"},
+             {needs.plateau, needs.lead ? "" : "stick", "v_b in stick, with radius and speed stated"}};
   std::string text;
-  for (const auto& [needed, brief, full] : all) {
-    const std::string name = in_full ? full : brief;
-    if (needed && !name.empty()) text += (text.empty() ? "" : ", ") + name;
+  for (const auto& [is_needed, brief, full] : all) {
+    const std::string& name = in_full ? full : brief;
+    if (is_needed && !name.empty()) text += (text.empty() ? "" : ", ") + name;
   }
   return text;
 }
@@ -48,25 +47,37 @@ std::string parameters_text(std::span<const Parameter> parameters) {
 /// What the bounds are proportional to, as the end of a description; empty where they are the same on every rig.
 std::string scaling_text(BoundScaling scaling) {
   using enum BoundScaling;
-  constexpr std::array<std::pair<BoundScaling, const char*>, 13> kTexts = {
-      {{with_slip_time, "in proportion to the slip time"},
-       {against_slip_time, "in inverse proportion to the slip time"},
-       {with_stick_time, "in proportion to the stick time"},
-       {with_slip_length, "in proportion to the slip length"},
-       {against_slip_length, "in inverse proportion to the slip length"},
-       {against_top_speed, "in inverse proportion to the top speed"},
-       {with_duration, "in proportion to the duration of the record"},
-       {against_duration, "in inverse proportion to the duration of the record"},
-       {with_distance, "in proportion to the distance slid"},
-       {with_stroke, "in proportion to the strokes"},
-       {with_mass, "in proportion to friction force over acceleration"},
-       {with_speed, "from the speeds of the record"},
-       {against_speed, "from the speeds of the record"}}};
-  const auto at = std::find_if(kTexts.begin(), kTexts.end(), [&](const auto& text) { return text.first == scaling; });
-  return at == kTexts.end() ? "" : std::string("; bounds ") + at->second;
+  constexpr std::pair<BoundScaling, const char*> kTexts[] = {
+      {with_slip_time, "in proportion to the slip time"},
+      {against_slip_time, "in inverse proportion to the slip time"},
+      {with_stick_time, "in proportion to the stick time"},
+      {with_slip_length, "in proportion to the slip length"},
+      {against_slip_length, "in inverse proportion to the slip length"},
+      {against_top_speed, "in inverse proportion to the top speed"},
+      {with_duration, "in proportion to the duration of the record"},
+      {against_duration, "in inverse proportion to the duration of the record"},
+      {with_distance, "in proportion to the distance slid"},
+      {with_stroke, "in proportion to the strokes"},
+      {with_mass, "in proportion to friction force over acceleration"},
+      {with_speed, "from the speeds of the record"},
+      {against_speed, "from the speeds of the record"}};
+  for (const auto& [one, text] : kTexts) {
+    if (one == scaling) return std::string("; bounds ") + text;
+  }
+  return "";
 }
 
 using Kind = ReportText::Kind;
+
+/// A name, and what is said of it, a line each; empty lines are left out.
+void add_entry(const std::string& name, std::initializer_list<std::string> details, ReportSection& section) {
+  section.text(Kind::name, name);
+  for (const std::string& detail : details) section.text(Kind::detail, detail);
+}
+
+std::string form_text(const EffectInfo& effect, const EffectForm& form) {
+  return effect.key + ":" + form.name + ": " + form.statement;
+}
 
 /// Parameters with their bounds, then what each is.
 ReportSection parameters_section(const EffectInfo& effect) {
@@ -75,8 +86,7 @@ ReportSection parameters_section(const EffectInfo& effect) {
   table.text({"parameter", "unit"}).numbers({"lower", "upper", "start"});
   Facts meanings;
   for (const Parameter& p : effect.parameters) {
-    table.rows.push_back(
-        {p.name, p.unit, fmt::format("{:g}", p.lower), fmt::format("{:g}", p.upper), fmt::format("{:g}", p.start)});
+    table.rows.push_back({p.name, p.unit, general(p.lower), general(p.upper), general(p.start)});
     const bool own = p.scope == ParameterScope::record;
     meanings.emplace_back(
         p.name, p.description + (own ? "; another value in each record" : "") + scaling_text(p.bound_scaling));
@@ -86,21 +96,82 @@ ReportSection parameters_section(const EffectInfo& effect) {
   return section;
 }
 
+// Fingerprints.
+
+constexpr std::size_t kRows = 13, kMargin = 11;
+
+/// An axis of the picture.
+struct PlotRange {
+  double low = 0, high = 0;
+  /// Cell 0 .. count-1.
+  std::size_t cell(double x, std::size_t count) const {
+    return static_cast<std::size_t>(std::lround((x - low) / (high - low) * static_cast<double>(count - 1)));
+  }
+  /// Ends to three digits, of one that hardly moves to as many as distinguish them.
+  std::string end(double value) const {
+    const double size = std::max(std::abs(low), std::abs(high));
+    if (std::abs(value) < 1e-3 * (high - low)) return "0";
+    const int digits = 3 + static_cast<int>(std::max(0.0, std::floor(std::log10(size / (high - low)))));
+    return general(value, std::min(digits, 6));
+  }
+};
+
+PlotRange range_of(const Fingerprint& print, std::vector<double> FingerprintCloud::*values, double si) {
+  std::vector<double> all;
+  for (const FingerprintCloud& cloud : print.clouds) {
+    all.insert(all.end(), (cloud.*values).begin(), (cloud.*values).end());
+  }
+  const Extremes ends = all.empty() ? Extremes{} : extremes(all);
+  const PlotRange range{ends.low / si, ends.high / si};
+  if (range.high - range.low > 1e-9 * std::max(1.0, std::abs(range.high))) return range;
+  const double half = std::max(0.01, 0.01 * std::abs(range.low));  // flat, or nothing at all
+  return {range.low - half, range.low + half};
+}
+
 }  // namespace
+
+std::string render_fingerprint(const Fingerprint& print, const TerminalOptions& options) {
+  const std::size_t columns = std::clamp<std::size_t>(options.width, 40, 80) - kMargin - 1;
+  const PlotRange x = range_of(print, &FingerprintCloud::x, print.x.si);
+  const PlotRange y = range_of(print, &FingerprintCloud::y, print.y.si);
+  const auto sign = [&](const char* full, const char* plain) { return options.unicode ? full : plain; };
+  const auto mark_of = [&](std::size_t cloud) { return cloud == 0 ? sign("\u2022", "*") : sign("\u25e6", "o"); };
+  const auto row_of = [&](double value) { return kRows - 1 - y.cell(value, kRows); };
+  std::vector<std::vector<std::string>> cells(kRows, std::vector<std::string>(columns, " "));
+  if (y.low < 0 && y.high > 0) cells[row_of(0)].assign(columns, sign("\u2508", "."));
+  for (std::size_t k = print.clouds.size(); k-- > 0;) {  // the first lies on top
+    const FingerprintCloud& cloud = print.clouds[k];
+    for (std::size_t i = 0; i < cloud.x.size(); ++i) {
+      cells[row_of(cloud.y[i] / print.y.si)][x.cell(cloud.x[i] / print.x.si, columns)] = mark_of(k);
+    }
+  }
+  std::string text = "  " + with_unit(print.y.label, print.y.unit);
+  for (std::size_t k = 0; k < print.clouds.size(); ++k) {
+    if (!print.clouds[k].name.empty()) text += fmt::format("   {} {}", mark_of(k), print.clouds[k].name);
+  }
+  for (std::size_t row = 0; row < kRows; ++row) {
+    const std::string end = row == 0 ? y.end(y.high) : row + 1 == kRows ? y.end(y.low) : "";
+    while (!cells[row].empty() && cells[row].back() == " ") cells[row].pop_back();
+    text += fmt::format("\n{:>{}} {}{}", end, kMargin - 2, sign("\u2502", "|"), fmt::join(cells[row], ""));
+  }
+  text += fmt::format("\n{:{}}{}", "", kMargin - 1, sign("\u2514", "+"));
+  for (std::size_t i = 0; i < columns; ++i) text += sign("\u2500", "-");
+  const std::string left = x.end(x.low), label = with_unit(print.x.label, print.x.unit), right = x.end(x.high);
+  const std::size_t used = left.size() + label.size() + right.size(), gap = columns > used ? columns - used : 2;
+  return text +
+         fmt::format("\n{:{}}{}{:{}}{}{:{}}{}\n", "", kMargin, left, "", gap / 2, label, "", gap - gap / 2, right);
+}
 
 Report laws_report(std::span<const Law> laws) {
   ReportSection of_speed{"laws", "Laws (--law KEY); each model has one", {}},
       of_state{"evolution", "Rate and state of velocity steps and holds (--evolution; identify help kinds)", {}};
   for (const Law& law : laws) {
     const LawInfo info = describe(law);
-    of_speed.text(Kind::name, std::string(to_string(law)));
-    for (const std::string& text : {info.statement, info.equation, parameters_text(info.parameters)}) {
-      of_speed.text(Kind::detail, text);
-    }
+    add_entry(std::string(to_string(law)), {info.statement, info.equation, parameters_text(info.parameters)}, of_speed);
   }
   for (const StateEvolution evolution : state_evolutions) {
-    of_state.text(Kind::name, std::string(to_string(evolution)));
-    of_state.text(Kind::detail, fmt::format("mu = mu_0 + a ln(v/v0) + b ln(v0 theta/D_c), {}", equation_of(evolution)));
+    add_entry(std::string(to_string(evolution)),
+              {fmt::format("mu = mu_0 + a ln(v/v0) + b ln(v0 theta/D_c), {}", equation_of(evolution))}, of_state);
   }
   Report report;
   report.add({std::move(of_speed), std::move(of_state)});
@@ -108,8 +179,8 @@ Report laws_report(std::span<const Law> laws) {
 }
 
 Report effects_report(std::span<const EffectInfo> effects) {
-  constexpr std::array<std::pair<EffectGroup, const char*>, 3> kGroups = {
-      {{EffectGroup::friction, "Friction"}, {EffectGroup::rig, "Rig"}, {EffectGroup::measurement, "Measurement"}}};
+  constexpr std::pair<EffectGroup, const char*> kGroups[] = {
+      {EffectGroup::friction, "Friction"}, {EffectGroup::rig, "Rig"}, {EffectGroup::measurement, "Measurement"}};
   Report report;
   ReportSection begin{"effects", "", {}};
   begin.text(Kind::title, "Effects that can be added to a base law with --effect KEY (bounds: dry contacts)");
@@ -118,11 +189,8 @@ Report effects_report(std::span<const EffectInfo> effects) {
     ReportSection section{title, title, {}};
     for (const EffectInfo& effect : effects) {
       if (effect.group != group) continue;
-      section.text(Kind::name, effect.key);
-      section.text(Kind::detail, effect.statement);
-      for (const EffectForm& form : effect.forms) {
-        section.text(Kind::detail, effect.key + ":" + form.name + ": " + form.statement);
-      }
+      add_entry(effect.key, {effect.statement}, section);
+      for (const EffectForm& form : effect.forms) section.text(Kind::detail, form_text(effect, form));
       const std::string needs = channels_text(effect.needs, false);
       section.text(Kind::detail, parameters_text(effect.parameters) + (needs.empty() ? "" : "; needs " + needs));
     }
@@ -141,14 +209,9 @@ Report effect_report(const EffectInfo& effect, const Fingerprint* print, const T
                  {"source", effect.source},
                  {"needs", needs.empty() ? "friction and velocity" : "friction, velocity, " + needs}};
   if (!effect.experiment.empty()) facts.emplace_back("best shown by", effect.experiment);
-  for (const EffectForm& form : effect.forms) {
-    facts.emplace_back("other form", effect.key + ":" + form.name + ": " + form.statement);
-  }
+  for (const EffectForm& form : effect.forms) facts.emplace_back("other form", form_text(effect, form));
   about.add(ReportFacts{std::move(facts), kNames});
-  for (const LookAlike& pair : effect.pairs) {
-    alike.text(Kind::name, pair.key);
-    alike.text(Kind::detail, pair.test);
-  }
+  for (const LookAlike& pair : effect.pairs) add_entry(pair.key, {pair.test}, alike);
   if (print != nullptr) {
     shown.plain("simulated with " + print->conditions);
     shown.text(Kind::drawing, render_fingerprint(*print, options));

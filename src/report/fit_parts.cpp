@@ -1,10 +1,7 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "fit/assessment.hpp"
-#include "numbers.hpp"
 #include "report_parts.hpp"
 
 namespace tribofit {
@@ -15,28 +12,28 @@ ReportTable correlation_table(const Fit& fit) {
   const std::size_t n = fit.parameters.size();
   ReportTable table("Correlations of the parameters");
   table.text({""}).folded = true;
+  if (n < 2 || fit.covariance.size() != n * n) return table;
   for (std::size_t i = 0; i < n; ++i) {
     table.numbers({full_name(fit.parameters[i])});
-    std::vector<std::string> row = {full_name(fit.parameters[i])};
+    auto& row = table.rows.emplace_back(1, full_name(fit.parameters[i]));
     for (std::size_t j = 0; j < n; ++j) {
       const double correlation = fit.correlation(i, j);
       row.push_back(std::isfinite(correlation) ? fixed(correlation, 2) : "-");
     }
-    table.rows.push_back(std::move(row));
   }
   return table;
 }
 
 void add_errors(const Fit& fit, const Motion& motion, ReportSection& section) {
   const auto level = [&](double value) { return significant(value, 3) + unit_behind(friction_unit(motion)); };
-  const std::string slow = fit.floor.slow_noise > 0 ? ", slow 1/f noise " + level(fit.floor.slow_noise) : "";
-  const std::string parts =
-      motion.is_points()
-          ? "from " + fit.floor.source
-          : fmt::format("noise {} from {}, break-away scatter {}{}", level(fit.floor.noise),
-                        fit.floor.source.empty() ? "the trace" : fit.floor.source, level(fit.floor.scatter), slow);
+  const Floor& floor = fit.floor;
+  std::string parts = "from " + (floor.source.empty() && !motion.is_points() ? "the trace" : floor.source);
+  if (!motion.is_points()) {
+    parts = fmt::format("noise {} {}, break-away scatter {}{}", level(floor.noise), parts, level(floor.scatter),
+                        floor.slow_noise > 0 ? ", slow 1/f noise " + level(floor.slow_noise) : "");
+  }
   section.soft(fmt::format("RMSE {}, held-out error {}; noise floor {} ({}).", level(fit.error.rmse),
-                           level(fit.error.held_out_rmse), level(fit.floor.rmse), parts));
+                           level(fit.error.held_out_rmse), level(floor.rmse), parts));
   section.soft(fmt::format("Relative error mean {}, largest {}; explains {} of the error above the noise floor.",
                            percent(fit.error.mean_relative), percent(fit.error.max_relative),
                            share_text(fit.explained)));
@@ -46,20 +43,16 @@ void add_errors(const Fit& fit, const Motion& motion, ReportSection& section) {
 }
 
 void add_fit(const Fit& fit, const Motion& motion, bool best, bool instruments_declared, ReportSection& section) {
-  const std::string protocol = protocol_text(fit.protocol);
-  section.heading(fmt::format("{}, {}{}", fit.model.name(), protocol, best ? " (best)" : ""));
+  section.heading(fmt::format("{}, {}{}", fit.model.name(), protocol_text(fit.protocol), best ? " (best)" : ""));
   section.soft(describe(fit.model.law()).equation);
   for (const Effect& effect : fit.model.effects()) {
     const EffectInfo info = describe(effect);
     section.soft(info.spelled() + ": " + info.equation);
   }
   if (!fit.converged) section.warning("This fit did not converge: do not rely on it.");
-  if (!fit.parameters.empty()) {
-    section.add(parameter_table(fit, motion, instruments_declared));
-    add_errors(fit, motion, section);
-    const std::size_t n = fit.parameters.size();
-    if (n > 1 && fit.covariance.size() == n * n) section.add(correlation_table(fit));
-  }
+  section.add(parameter_table(fit, motion, instruments_declared));
+  if (!fit.parameters.empty()) add_errors(fit, motion, section);
+  section.add(correlation_table(fit));
   for (const std::string& message : fit.messages) section.item("Note: " + message);
 }
 
@@ -84,28 +77,34 @@ void add_protocols(std::span<const Fit> fits, const Motion& motion, ReportSectio
       different |= is_outside(a, b);
     }
   }
-  if (table.rows.empty() && notes.empty()) return;
+  const bool none = table.rows.empty();
+  if (none && notes.empty()) return;
   section.heading("Per-cycle extremes beside the joint fit");
-  const bool agree = !table.rows.empty() && !different;
-  if (!table.rows.empty()) section.add(std::move(table));
-  if (agree) {
-    section.soft("The extremes agree within the 95 % intervals of the joint fit.");
-  }
+  section.add(std::move(table));
   if (different) {
     section.soft(
         "Per-cycle extremes take mu_s and mu_k from the maximum and minimum of each cycle: noise widens extremes, and "
         "the minimum in slip lies above mu_k where slips end before friction has levelled off. Use the joint fit for "
         "values, the extremes to compare with papers that used them.");
+  } else if (!none) {
+    section.soft("The extremes agree within the 95 % intervals of the joint fit.");
   }
   for (std::string& note : notes) section.soft(std::move(note));
+}
+
+/// Two figures with as many digits as show that they differ.
+std::string distinct(double first, double second) {
+  constexpr int kFewest = 3, kMost = 6;
+  int digits = kFewest;
+  while (digits < kMost && significant(first, digits) == significant(second, digits)) ++digits;
+  return significant(first, digits) + " against " + significant(second, digits);
 }
 
 }  // namespace
 
 Facts model_facts(const char* name, std::span<const Fit> fits, std::size_t best, const Motion& motion) {
-  Facts facts;
-  if (best >= fits.size() || fits[best].parameters.empty()) return facts;
-  facts.emplace_back(name, curve_name(fits[best]));
+  if (best >= fits.size() || fits[best].parameters.empty()) return {};
+  Facts facts = {{name, curve_name(fits[best])}};
   for (const FitParameter& p : fits[best].parameters) facts.emplace_back(full_name(p), value_text(p, motion));
   return facts;
 }
@@ -126,17 +125,16 @@ ReportTable value_table(const char* name, const std::vector<ShownValue>& values)
   for (const ShownValue& v : values) {
     const bool known = v.determined && std::isfinite(v.std_error) && v.std_error > 0;
     const int places = known ? places_for(v.std_error) : 0;
-    table.rows.push_back({v.name, !v.determined ? "not determined"
-                                  : known       ? fixed(v.value, places)
-                                                : significant(v.value, 5)});
+    const std::string value = known ? fixed(v.value, places) : significant(v.value, 5);
+    table.rows.push_back({v.name, v.determined ? value : "not determined"});
     errors.push_back(known ? fixed(v.std_error, places) : "");
     parts.push_back(known && v.value != 0 ? "(" + percent(v.std_error / std::abs(v.value)) + ")" : "");
     intervals.push_back(known && std::isfinite(v.lower95) ? interval_text(v.lower95, v.upper95, places) : v.limits);
     units.push_back(v.unit);
   }
   const auto some_unknown = [](std::vector<std::string> cells) {
-    const bool none = std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); });
-    std::replace(cells.begin(), cells.end(), std::string(), std::string(none ? "" : "-"));
+    const auto empty = [](const std::string& cell) { return cell.empty(); };
+    if (!std::all_of(cells.begin(), cells.end(), empty)) std::replace_if(cells.begin(), cells.end(), empty, "-");
     return cells;
   };
   table.add({"std error", true, 1}, some_unknown(std::move(errors)));
@@ -159,13 +157,12 @@ ReportTable parameter_table(const Fit& fit, const Motion& motion, bool systemati
   std::vector<std::string> profiles, errors, starts, remarks;
   for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
     const FitParameter& p = fit.parameters[k];
-    const auto text = [&](double si) { return fixed(shown(p, si), places_of(p)); };
+    const int places = places_of(p);
     const bool profile = p.determined && std::isfinite(p.profile_lower95) && p.profile_lower95 < p.profile_upper95;
-    profiles.push_back(profile ? interval_text(shown(p, p.profile_lower95), shown(p, p.profile_upper95), places_of(p))
-                               : "");
+    profiles.push_back(profile ? interval_text(shown(p, p.profile_lower95), shown(p, p.profile_upper95), places) : "");
     // Nothing declared that bears on it is not the same as no uncertainty.
     errors.push_back(std::isnan(p.systematic)           ? "unknown"
-                     : p.systematic > 0 && p.determined ? text(p.systematic)
+                     : p.systematic > 0 && p.determined ? fixed(shown(p, p.systematic), places)
                      : systematic || p.systematic != 0  ? "-"
                                                         : "");
     starts.push_back(significant(shown(p, p.start), 3));
@@ -191,46 +188,30 @@ void add_fits(std::span<const Fit> fits, std::size_t best, const Motion& motion,
     for (std::size_t i = begin; i < section.items.size(); ++i) section.items[i].medium = Medium::page;
   }
   section.heading("Intervals and range");
-  const std::string between = motion.is_points() ? "from point to point" : "from cycle to cycle";
-  section.soft("Intervals are statistical, " + between +
-               (instruments_declared
-                    ? "; systematic is one standard uncertainty from the declared "
-                      "instruments, not part of them."
-                    : "; no instrument uncertainties declared (--instruments), so there is no systematic part."));
+  section.soft(fmt::format(
+      "Intervals are statistical, from {}; {}.", motion.is_points() ? "point to point" : "cycle to cycle",
+      instruments_declared ? "systematic is one standard uncertainty from the declared instruments, not part of them"
+                           : "no instrument uncertainties declared (--instruments), so there is no systematic part"));
   if (fits[best].fastest > 0) {
     section.soft(fmt::format("The data reach |v_r| = {} mm/s; beyond that the laws are extrapolated.",
                              significant(fits[best].fastest / kMillimetre, 3)));
   }
 }
 
-namespace {
-
-/// Two figures with as many digits as show that they differ.
-std::string distinct(double first, double second) {
-  constexpr int kFewest = 3, kMost = 6;
-  std::string a, b;
-  for (int digits = kFewest; digits <= kMost && a == b; ++digits) {
-    a = significant(first, digits);
-    b = significant(second, digits);
-  }
-  return a + " against " + b;
-}
-
-}  // namespace
-
 void add_comparisons(std::span<const Fit> fits, std::size_t best, const Motion& motion, ReportSection& section) {
   add_protocols(fits, motion, section);
   const std::vector<LawComparison> comparisons = compare_laws(fits, best);
   if (!comparisons.empty()) section.heading("Which law");
   for (const LawComparison& c : comparisons) {
-    const Fit &first = fits[c.first], &second = fits[c.second];
-    const Fit &ahead = c.comparison.first_better ? first : second, &behind = c.comparison.first_better ? second : first;
-    const std::string figures = fmt::format("{}, {}", distinct(first.error.held_out_rmse, second.error.held_out_rmse),
+    const Fit *first = &fits[c.first], *second = &fits[c.second];
+    const std::string figures = fmt::format("{}, {}", distinct(first->error.held_out_rmse, second->error.held_out_rmse),
                                             p_value_text(c.comparison.p_value));
-    section.plain(c.clear ? fmt::format("{} has the smaller held-out error than {} ({}).", ahead.model.name(),
-                                        behind.model.name(), figures)
-                          : fmt::format("{} and {} are not distinguishable with these data (held-out error {}).",
-                                        first.model.name(), second.model.name(), figures));
+    if (c.clear && !c.comparison.first_better) std::swap(first, second);
+    section.plain(
+        fmt::format(fmt::runtime(c.clear ? "{} has the smaller held-out error than {} ({})."
+                                         : "{} and {} are not distinguishable with these data (held-out error "
+                                           "{})."),
+                    first->model.name(), second->model.name(), figures));
   }
 }
 

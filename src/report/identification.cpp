@@ -1,10 +1,6 @@
-#include <fmt/format.h>
-
-#include <array>
 #include <cmath>
 
 #include "fit/assessment.hpp"
-#include "numbers.hpp"
 #include "rate_state.hpp"
 #include "report/charts/styles.hpp"
 #include "report_parts.hpp"
@@ -14,70 +10,89 @@
 namespace tribofit {
 namespace {
 
-std::string verdict_on(const Identification& r, const Fit& fit) {
-  const auto level = [&](double value) { return significant(value, 3) + (friction_unit(r.motion) == "N" ? " N" : ""); };
-  const bool bare = fit.model.effects().empty();
-  const std::string name = (bare ? "The " : "The law ") + fit.model.name() + (bare ? " law" : "");
-  const std::string held_out = level(fit.error.held_out_rmse), floor = level(fit.floor.rmse);
-  const std::string typical = percent(fit.error.mean_relative);
-  std::string remains = "its held-out error is " + held_out;
-  const double ratio = over_floor(fit);
-  if (is_far_above_floor(fit)) {
-    remains += ", far above the noise floor of " + floor;
-  } else if (std::isfinite(ratio)) {
-    remains += fmt::format(", {} times the noise floor of {}", significant(ratio, 2), floor);
-  }
-  switch (quality_of(fit)) {
+/// What is said of a fit: {0} the law, {1} its held-out error, {2} the noise floor, {3} its error on the cycles that
+/// were fitted, {4} its typical relative error, {5} the held-out error beside the floor.
+const char* sentence_on(FitQuality quality) {
+  switch (quality) {
     case FitQuality::floor_too_high:
-      return fmt::format(
-          "{} has a held-out error of {}, less than the noise floor of {}: the noise floor is overestimated here, so "
-          "the data do not show whether an effect remains.",
-          name, held_out, floor);
+      return "{0} has a held-out error of {1}, less than the noise floor of {2}: the noise floor is overestimated "
+             "here, so the data do not show whether an effect remains.";
     case FitQuality::not_transferable:
-      return fmt::format(
-          "{} does not carry over to held-out cycles: its error there is {}, and {} on the cycles it was fitted to. Do "
-          "not rely on its values.",
-          name, held_out, level(fit.error.rmse));
+      return "{0} does not carry over to held-out cycles: its error there is {1}, and {3} on the cycles it was fitted "
+             "to. Do not rely on its values.";
     case FitQuality::at_floor:
-      return fmt::format(
-          "{} describes this trace as well as its noise allows: the held-out error is {}, the noise floor {}.", name,
-          held_out, floor);
+      return "{0} describes this trace as well as its noise allows: the held-out error is {1}, the noise floor {2}.";
     case FitQuality::close:
-      return fmt::format("{} is close (typically {} off), but {}: a small effect may remain.", name, typical, remains);
+      return "{0} is close (typically {4} off), but {5}: a small effect may remain.";
     case FitQuality::outline:
-      return fmt::format("{} describes only the general shape (typical error {}): {}. An effect is not modelled.", name,
-                         typical, remains);
+      return "{0} describes only the general shape (typical error {4}): {5}. An effect is not modelled.";
     case FitQuality::poor:
     case FitQuality::unusable:
       break;
   }
-  return fmt::format("{} does not describe this trace (typically {} off): {}. Do not rely on its values.", name,
-                     typical, remains);
+  return "{0} does not describe this trace (typically {4} off): {5}. Do not rely on its values.";
 }
 
-/// Parameters that these data do not fix, as a sentence; empty where all are fixed.
-std::string undetermined(const Fit& fit) {
-  std::vector<std::string> names;
-  for (const FitParameter& p : fit.parameters) {
-    if (!is_fixed(p)) names.push_back((p.effect.empty() ? "" : p.effect + " ") + p.parameter.name);
+std::string verdict_on(const Fit& fit, const std::string& unit) {
+  const auto level = [&](double value) { return significant(value, 3) + unit_behind(unit); };
+  const bool bare = fit.model.effects().empty();
+  const std::string name = (bare ? "The " : "The law ") + fit.model.name() + (bare ? " law" : "");
+  const std::string held_out = level(fit.error.held_out_rmse), floor = level(fit.floor.rmse);
+  std::string remains = "its held-out error is " + held_out;
+  if (is_far_above_floor(fit)) {
+    remains += ", far above the noise floor of " + floor;
+  } else if (const double ratio = over_floor(fit); std::isfinite(ratio)) {
+    remains += fmt::format(", {} times the noise floor of {}", significant(ratio, 2), floor);
   }
-  return names.empty() ? "" : fmt::format(" Not determined by these data: {}.", fmt::join(names, ", "));
-}
-
-/// Checks of the data that bear on the values and are not in order.
-std::string open_problems(const Identification& r) {
-  std::vector<std::string> names;
-  for (const HealthItem& item : r.motion.health) {
-    if (item.status != HealthItem::Status::ok && health_check::bears_on_values(item.check)) names.push_back(item.check);
-  }
-  return names.empty()
-             ? ""
-             : fmt::format(" The values hold only if what Health says of {} is resolved.", fmt::join(names, ", "));
+  return fmt::format(fmt::runtime(sentence_on(quality_of(fit))), name, held_out, floor, level(fit.error.rmse),
+                     percent(fit.error.mean_relative), remains);
 }
 
 /// No fit that could be relied on.
 bool is_unusable(const Identification& r) {
   return r.fits.empty() || quality_of(r.fits[r.best]) == FitQuality::unusable;
+}
+
+/// How good the best fit is, in one sentence an engineer would say, and what its values do not hold for.
+std::string verdict(const Identification& r) {
+  if (r.rate_state) return verdict_on(*r.rate_state);
+  if (!r.analysed) return "No law was fitted; what the trace does show stands above.";
+  if (is_unusable(r)) return "No fit can be trusted here; the notes at the fits say why.";
+  const Fit& best = r.fits[r.best];
+  std::string text = verdict_on(best, friction_unit(r.motion));
+  std::vector<std::string> loose, open;
+  for (const FitParameter& p : best.parameters) {
+    if (!is_fixed(p)) loose.push_back((p.effect.empty() ? "" : p.effect + " ") + p.parameter.name);
+  }
+  for (const HealthItem& item : r.motion.health) {
+    if (item.status != HealthItem::Status::ok && health_check::bears_on_values(item.check)) open.push_back(item.check);
+  }
+  if (!loose.empty()) text += fmt::format(" Not determined by these data: {}.", fmt::join(loose, ", "));
+  if (open.empty()) return text;
+  return text + fmt::format(" The values hold only if what Health says of {} is resolved.", fmt::join(open, ", "));
+}
+
+/// What to do next with a trace and its fits.
+Suggestion next_command(const Identification& r, const ReportOptions& options) {
+  const auto with = [&](const std::vector<std::string>& more) { return command_line(options, more, r.path); };
+  const bool steps = r.rate_state && r.rate_state->fitted(), usable = r.analysed && !is_unusable(r);
+  const bool trimmed = r.motion.trimmed > 0 && !has_option(options.arguments, "--no-trim");
+  const bool has_csv = options.csv_written;
+  const std::string csv = with({"--csv", csv_folder_for(r.path)});
+  return first_of(
+      {{steps && !has_csv, "to plot the response and to go on with the values of each step", csv},
+       {steps && !options.report_written, "to see the response on a page of charts", with({"--report", "steps.html"})},
+       {steps, "to read what else can be said of steps and holds", "identify help kinds"},
+       {r.force_statistics.has_value(), "to see what else the file holds", command_line({"columns"}, {r.path})},
+       {!usable && trimmed, "to see whether the run-up that was left out shows more", with({"--no-trim"})},
+       {!usable && !has_csv, "to look at the trace sample by sample", csv},
+       {!usable, "to see which options there are", "identify --help"},
+       {usable && is_above_floor(r.fits[r.best]), "to see where the law fails and which effect explains it",
+        diagnose_command(options.arguments, r.path)},
+       {!has_csv, "to plot the curve, the residuals and the cycles", csv},
+       {!has_option(options.arguments, "--profile"), "to check the intervals by profile likelihood",
+        with({"--profile"})},
+       {true, "to see which effects can be added", "identify effects"}});
 }
 
 /// Of what the motion shows, in the order of RecordKind.
@@ -112,56 +127,15 @@ ReportSection motion_section(const Identification& result) {
 
 }  // namespace
 
-std::string verdict(const Identification& result) {
-  if (result.rate_state) return verdict_on(*result.rate_state);
-  if (!result.analysed) return "No law was fitted; what the trace does show stands above.";
-  if (is_unusable(result)) return "No fit can be trusted here; the notes at the fits say why.";
-  const Fit& best = result.fits[result.best];
-  return verdict_on(result, best) + undetermined(best) + open_problems(result);
-}
-
-Suggestion next_command(const Identification& result, const ReportOptions& options) {
-  const auto same_with = [&](const std::vector<std::string>& more) { return command_line(options, more, result.path); };
-  const std::vector<std::string> csv = {"--csv", csv_folder_for(result.path)};
-  if (result.rate_state && result.rate_state->fitted()) {
-    if (!options.csv_written) return {"to plot the response and to go on with the values of each step", same_with(csv)};
-    if (!options.report_written)
-      return {"to see the response on a page of charts", same_with({"--report", "steps.html"})};
-    return {"to read what else can be said of steps and holds", "identify help kinds"};
-  }
-  if (result.force_statistics) return {"to see what else the file holds", command_line({"columns"}, {result.path})};
-  if (!result.analysed || is_unusable(result)) {
-    if (result.motion.trimmed > 0 && !has_option(options.arguments, "--no-trim")) {
-      return {"to see whether the run-up that was left out shows more", same_with({"--no-trim"})};
-    }
-    if (!options.csv_written) return {"to look at the trace sample by sample", same_with(csv)};
-    return {"to see which options there are", "identify --help"};
-  }
-  if (is_above_floor(result.fits[result.best])) {
-    return {"to see where the law fails and which effect explains it",
-            diagnose_command(options.arguments, result.path)};
-  }
-  if (!options.csv_written) return {"to plot the curve, the residuals and the cycles", same_with(csv)};
-  if (!has_option(options.arguments, "--profile")) {
-    return {"to check the intervals by profile likelihood", same_with({"--profile"})};
-  }
-  return {"to see which effects can be added", "identify effects"};
-}
-
 Report report_of(const Identification& result, const ReportOptions& options) {
   const bool driven = is_driven_in_steps(result.motion.kind);
   Report report = titled_report("friction law", file_name(result.path), driven ? "Rate and state" : "Friction law",
                                 verdict(result));
   report.warnings = result.warnings;
   report.facts = model_facts("best law", result.fits, result.best, result.motion);
-  const Facts record = facts_of(result);
-  report.facts.insert(report.facts.end(), record.begin(), record.end());
+  add_facts(result, report);
   report.next = {next_command(result, options)};
-  if (!driven && result.analysed && !is_unusable(result)) {
-    for (Suggestion& way : ways_to_look("", options.arguments, result.path, options.report_written)) {
-      report.next.push_back(std::move(way));
-    }
-  }
+  if (!driven && result.analysed && !is_unusable(result)) add_ways_to_look("", result.path, options, report);
   TraceSections sections;
   if (driven && result.rate_state) {
     sections.law.title = "Rate and state";

@@ -52,6 +52,10 @@ int places_of(const FitParameter& p) {
   return value > 0 && std::isfinite(value) ? std::max(0, 4 - static_cast<int>(std::floor(std::log10(value)))) : 4;
 }
 
+std::string estimate_text(const Estimate& estimate, double si, const std::string& unit) {
+  return with_error(estimate.value / si, estimate.std_error / si) + unit_behind(unit);
+}
+
 std::vector<double> in_unit(std::span<const double> values, double unit) {
   std::vector<double> out(values.begin(), values.end());
   for (double& value : out) value /= unit;

@@ -9,6 +9,7 @@
 #include "tribofit/kinematics/motion.hpp"
 #include "tribofit/output/digits.hpp"
 #include "tribofit/output/text.hpp"
+#include "tribofit/statistics/standard_error_of_mean.hpp"
 
 namespace tribofit {
 
@@ -36,6 +37,9 @@ int places_of(const FitParameter& parameter);
 
 /// A curve as a legend names it: "exponential + viscous, per-cycle extremes".
 std::string curve_name(const Fit& fit);
+
+/// "0.421 +/- 0.002 mm/s": in a unit of that size and name.
+std::string estimate_text(const Estimate& estimate, double si = 1, const std::string& unit = "");
 
 /// `values` in a unit.
 std::vector<double> in_unit(std::span<const double> values, double unit);

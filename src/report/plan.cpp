@@ -19,40 +19,40 @@ namespace {
 constexpr std::size_t kPredictionsShown = 4;
 constexpr double kClear = 2;  // spreads by which models are apart that a person sees
 
-std::string time_text(double seconds) {
-  return seconds < 120 ? fmt::format("{:.0f} s", std::ceil(seconds)) : fmt::format("{:.1f} min", seconds / 60);
-}
-
 bool differs(double a, double b) {
   return std::abs(a - b) > 1e-6 * std::abs(b);
+}
+
+std::string pauses_text(const std::vector<Pause>& pauses) {
+  if (pauses.empty()) return "";
+  const auto [shortest, longest] = std::minmax_element(
+      pauses.begin(), pauses.end(), [](const Pause& a, const Pause& b) { return a.duration < b.duration; });
+  return fmt::format("with {} pauses of {} to {} s", pauses.size(), significant(shortest->duration, 2),
+                     significant(longest->duration, 2));
 }
 
 /// "9 mm at 8 rpm for 12 s".
 std::string run_text(const RunConditions& run, const RunConditions& own) {
   std::vector<std::string> parts;
+  const auto add = [&](bool is_said, const std::string& part) {
+    if (is_said) parts.push_back(part);
+  };
   const std::string speed = brief(run.speed / kRpm) + " rpm";
-  if (differs(run.radius, own.radius)) parts.push_back(brief(run.radius / kMillimetre) + " mm");
+  add(differs(run.radius, own.radius), brief(run.radius / kMillimetre) + " mm");
   if (run.reversing > 0) {
     parts.push_back(fmt::format("forth and back at up to {}, {} s a turn", speed, brief(1 / run.reversing)));
-  } else if (differs(run.speed, own.speed)) {
-    parts.push_back(parts.empty() ? speed : "at " + speed);
+  } else {
+    add(differs(run.speed, own.speed), parts.empty() ? speed : "at " + speed);
   }
-  if (differs(run.load, own.load)) parts.push_back("under " + brief(run.load) + " N");
-  if (differs(run.stiffness, own.stiffness))
-    parts.push_back(fmt::format("on a spring of {} N/mm", brief(run.stiffness * kMillimetre)));
-  if (run.mass_below > 0)
-    parts.push_back(fmt::format("with {} g more below the force sensor", brief(1e3 * run.mass_below)));
-  if (!run.pauses.empty()) {
-    double shortest = 1e300, longest = 0;
-    for (const Pause& pause : run.pauses) {
-      shortest = std::min(shortest, pause.duration), longest = std::max(longest, pause.duration);
-    }
-    parts.push_back(fmt::format("with {} pauses of {} to {} s", run.pauses.size(), significant(shortest, 2),
-                                significant(longest, 2)));
-  }
-  if (differs(run.rate, own.rate)) parts.push_back("sampled at " + frequency_text(run.rate));
-  if (parts.empty()) parts.emplace_back("the same again");
-  return fmt::format("{} for {}", fmt::join(parts, " "), time_text(run.duration));
+  add(differs(run.load, own.load), "under " + brief(run.load) + " N");
+  add(differs(run.stiffness, own.stiffness), "on a spring of " + brief(run.stiffness * kMillimetre) + " N/mm");
+  add(run.mass_below > 0, "with " + brief(1e3 * run.mass_below) + " g more below the force sensor");
+  add(!run.pauses.empty(), pauses_text(run.pauses));
+  add(differs(run.rate, own.rate), "sampled at " + frequency_text(run.rate));
+  add(parts.empty(), "the same again");
+  const double s = run.duration;
+  return fmt::format("{} for {}", fmt::join(parts, " "),
+                     s < 120 ? fmt::format("{:.0f} s", std::ceil(s)) : fmt::format("{:.1f} min", s / 60));
 }
 
 /// A name for the file of a new run, from which `identify manifest` reads its conditions.
@@ -85,6 +85,11 @@ std::string experiment_text(const Experiment& experiment, const RunConditions& o
   return fmt::format("{}", fmt::join(runs, ", then "));
 }
 
+/// "35 %"; "-" where it is not known.
+std::string whole_percent(double share) {
+  return std::isfinite(share) ? fmt::format("{:.0f} %", 100 * share) : "-";
+}
+
 /// The answer of a model: "frictional-lag", "nothing more".
 std::string model_text(const ModelInQuestion& model) {
   return model.name.empty() ? "nothing more" : model.name;
@@ -102,8 +107,7 @@ std::string question_sentence(const DiagnosedTraces& diagnosed, const RunPlan& p
   }
   std::vector<std::string> answers;
   for (const ModelInQuestion& model : plan.models) {
-    answers.push_back(plan.reason.empty() ? fmt::format("{} ({:.0f} %)", model_text(model), 100 * model.probability)
-                                          : model_text(model));
+    answers.push_back(model_text(model) + (plan.reason.empty() ? " (" + whole_percent(model.probability) + ")" : ""));
   }
   return fmt::format("Open: {}. {}", enumerated(answers, "or"),
                      plan.kind == QuestionKind::possible ? "What it would explain may be chance."
@@ -118,18 +122,17 @@ std::string plan_verdict(const DiagnosedTraces& diagnosed, const RunPlan& plan) 
     return next.empty() ? "A repeat of the run, held back with --confirm, would confirm the law." : next;
   }
   const std::string known = catalogue_experiment(plan), instead = known.empty() ? "" : " What would: " + known + ".";
-  if (plan.kind == QuestionKind::plateau && plan.experiments.empty())
-    return "No run distinguishes them: they move the plateau alike in every one." + instead;
-  if (plan.experiments.empty()) return "None of the stated means changes anything that could be seen." + instead;
-  const PlannedExperiment& best = plan.experiments.front();
-  const std::string run = experiment_text(best.experiment, plan.own),
-                    chance = fmt::format("{:.0f} %", 100 * best.probability);
-  if (plan.hopeless) {
-    return fmt::format(
-        "Nothing within the stated means is likely to settle it: the best, {}, does so with a probability of {}.{}",
-        run, chance, instead);
+  if (plan.experiments.empty()) {
+    return (plan.kind == QuestionKind::plateau ? "No run distinguishes them: they move the plateau alike in every one."
+                                               : "None of the stated means changes anything that could be seen.") +
+           instead;
   }
-  return fmt::format("Best: {}. It names the effect alone with a probability of {}.", run, chance);
+  const PlannedExperiment& best = plan.experiments.front();
+  const std::string run = experiment_text(best.experiment, plan.own), chance = whole_percent(best.probability);
+  if (!plan.hopeless) return fmt::format("Best: {}. It names the effect alone with a probability of {}.", run, chance);
+  return fmt::format(
+      "Nothing within the stated means is likely to settle it: the best, {}, does so with a probability of {}.{}", run,
+      chance, instead);
 }
 
 /// Experiments with their minutes and their probabilities.
@@ -140,8 +143,8 @@ ReportTable experiments_table(const RunPlan& plan) {
   table.columns.push_back({"diagnosed", true, 2, {}});
   for (const PlannedExperiment& one : plan.experiments) {
     std::vector<std::string> row = {experiment_text(one.experiment, plan.own), fixed(one.minutes(), 1),
-                                    one.reason.empty() ? fmt::format("{:.0f} %", 100 * one.probability) : "-"};
-    for (const double p : one.of_models) row.push_back(std::isfinite(p) ? fmt::format("{:.0f} %", 100 * p) : "-");
+                                    one.reason.empty() ? whole_percent(one.probability) : "-"};
+    for (const double p : one.of_models) row.push_back(whole_percent(p));
     row.push_back(one.simulated > 0 ? fmt::format("{} of {}", one.named, one.simulated) : "");
     table.rows.push_back(std::move(row));
   }
@@ -190,54 +193,49 @@ std::vector<std::string> plan_notes(const RunPlan& plan) {
 Suggestion next_after_plan(const DiagnosedTraces& diagnosed, const RunPlan& plan, const ReportOptions& options) {
   const std::vector<std::string> inputs =
       options.inputs.empty() ? std::vector<std::string>{diagnosed.traces.front().path} : options.inputs;
-  const auto with_lab = [&] {
-    return command_line(words_of({"diagnose", "--instruments", "lab.json"}, options.arguments, {}, {"--instruments"}),
-                        inputs);
+  const bool open = plan.reason.empty() && plan.kind != QuestionKind::nothing && !plan.experiments.empty();
+  const Experiment best = open ? plan.experiments.front().experiment : Experiment{};
+  const auto diagnose = [&](const char* verb, std::vector<std::string> words, const char* dropped,
+                            const std::vector<std::string>& files = {}) {
+    words.insert(words.begin(), verb);
+    return command_line(words_of(words, options.arguments, {dropped}), joined(inputs, files));
   };
-  if (!plan.reason.empty() || plan.kind == QuestionKind::nothing || plan.experiments.empty())
-    return {"to see the diagnosis behind it", command_line(words_of({"diagnose"}, options.arguments), inputs)};
-  const PlannedExperiment& best = plan.experiments.front();
-  if (best.experiment.accelerometer) {
-    return {"once the gain that it shows stands in lab.json (vibrometer.gain)", with_lab()};
-  }
-  if (best.experiment.lift) return {"once its zero stands in lab.json (force_sensor.zero)", with_lab()};
-  if (best.experiment.tap > 0) {
-    return {
-        "once the shift that the tap shows stands in lab.json (vibrometer.delay), and what a sharp edge allows "
-        "(force_sensor.bandwidth_at_least)",
-        with_lab()};
-  }
+  const std::string with_lab = diagnose("diagnose", {"--instruments", "lab.json"}, "--instruments=");
   std::vector<std::string> files;
   bool same_place = true, repeats = false;
-  for (const RunConditions& run : best.experiment.runs) {
+  for (const RunConditions& run : best.runs) {
     files.push_back(file_for(run, plan.own));
     same_place &= !differs(run.radius, plan.own.radius) && !differs(run.load, plan.own.load);
     repeats |= !differs(run.speed, plan.own.speed) && run.pauses.empty() && !(run.reversing > 0);
   }
-  if (same_place) {  // a diagnosis would keep a repeat to confirm what it finds; a plan goes on from it
-    const std::string verb = repeats ? "plan" : "diagnose";
-    return {"with the new run beside the record",
-            command_line(words_of({verb}, options.arguments, {}, {"--speed"}), joined(inputs, files))};
-  }
-  return {fmt::format("with all records in runs/, the new one as {}", enumerated(files)),
-          command_line({"manifest", "runs/", "--out", "runs/manifest.csv"}, {})};
+  // A diagnosis would keep a repeat to confirm what it finds; a plan goes on from it.
+  return first_of(
+      {{!open, "to see the diagnosis behind it", diagnose("diagnose", {}, "")},
+       {best.accelerometer, "once the gain that it shows stands in lab.json (vibrometer.gain)", with_lab},
+       {best.lift, "once its zero stands in lab.json (force_sensor.zero)", with_lab},
+       {best.tap > 0,
+        "once the shift that the tap shows stands in lab.json (vibrometer.delay), and what a sharp edge allows "
+        "(force_sensor.bandwidth_at_least)",
+        with_lab},
+       {same_place, "with the new run beside the record",
+        diagnose(repeats ? "plan" : "diagnose", {}, "--speed=", files)},
+       {true, fmt::format("with all records in runs/, the new one as {}", enumerated(files)),
+        command_line({"manifest", "runs/", "--out", "runs/manifest.csv"}, {})}});
 }
 
 /// What each model predicts over a variable, with bands.
 Chart predicted_chart(const RunPlan& plan, const PredictedCurves& curves, const std::string& id, bool force) {
-  Chart chart;
-  chart.id = id;
-  chart.title = capitalised(curves.quantity) + " as each model predicts it";
-  chart.note = "Bands hold 95 % of the records that a model makes, with its parameters drawn within their errors.";
-  chart.x = {.quantity = curves.name, .unit = curves.unit};
+  Chart chart{
+      .id = id,
+      .title = capitalised(curves.quantity) + " as each model predicts it",
+      .note = "Bands hold 95 % of the records that a model makes, with its parameters drawn within their errors.",
+      .x = {.quantity = curves.name, .unit = curves.unit}};
   chart.panels[0].axis = {.quantity = curves.quantity, .unit = force ? "N" : "1"};
   for (std::size_t m = 0; m < curves.models.size() && m < plan.models.size(); ++m) {
     const PredictedCurves::OfModel& model = curves.models[m];
     ChartLine& line = chart.line("if " + model_text(plan.models[m]), stroke_of(m));
     line.x = in_unit(model.x, curves.si);
-    line.y = model.y;
-    line.low = model.lower95;
-    line.high = model.upper95;
+    line.y = model.y, line.low = model.lower95, line.high = model.upper95;
   }
   return chart;
 }

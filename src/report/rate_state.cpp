@@ -1,12 +1,10 @@
 #include "rate_state.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "numbers.hpp"
+#include "campaign/described_results.hpp"
+#include "json_parts.hpp"
 #include "report_parts.hpp"
 
 namespace tribofit {
@@ -14,13 +12,13 @@ namespace {
 
 constexpr double kMicrometre = 1e-6;
 
-std::string of_steps(const RateStateFit& fit, std::size_t steps) {
-  if (fit.step) return fmt::format("step {}", *fit.step + 1);
-  return steps == 1 ? "one step" : fmt::format("{} steps together", steps);
-}
-
 std::string critical_stiffness_text(const RateStateFit& fit) {
   return fit.states > 1 ? "k_c of two states" : "k_c = (b - a)/D_c";
+}
+
+/// " (p = 0.03)".
+std::string chance(double p_value) {
+  return " (" + p_value_text(p_value) + ")";
 }
 
 ReportTable parameter_table_of(const RateStateFit& fit, const Motion& motion) {
@@ -33,10 +31,10 @@ ReportTable parameter_table_of(const RateStateFit& fit, const Motion& motion) {
                       friction_unit(motion)});
     remarks.emplace_back();
   }
+  const double lower = fit.stiffness_ratio_lower95, upper = fit.stiffness_ratio_upper95;
   if (std::isfinite(fit.stiffness_ratio)) {
-    const double half = 0.25 * std::log(fit.stiffness_ratio_upper95 / fit.stiffness_ratio_lower95);
-    values.push_back({"k/k_c", fit.stiffness_ratio, fit.stiffness_ratio * half, fit.stiffness_ratio_lower95,
-                      fit.stiffness_ratio_upper95, "1"});
+    const double std_error = fit.stiffness_ratio * 0.25 * std::log(upper / lower);
+    values.push_back({"k/k_c", fit.stiffness_ratio, std_error, lower, upper, "1"});
     remarks.push_back(critical_stiffness_text(fit));
   }
   ReportTable table = value_table("parameter", values);
@@ -46,71 +44,63 @@ ReportTable parameter_table_of(const RateStateFit& fit, const Motion& motion) {
 
 void add_law(const RateStateAnalysis& analysis, std::size_t k, const Motion& motion, ReportSection& section) {
   const RateStateFit& fit = analysis.fits[k];
-  const bool best = k == analysis.best && analysis.fits.size() > 1;
+  const std::size_t steps = analysis.steps.size();
   section.heading(fmt::format("{} law, {}{}", capitalised(std::string(to_string(fit.evolution))),
-                              of_steps(fit, analysis.steps.size()), best ? " (best)" : ""));
-  const bool two = fit.states > 1;
+                              fit.step     ? fmt::format("step {}", *fit.step + 1)
+                              : steps == 1 ? "one step"
+                                           : fmt::format("{} steps together", steps),
+                              k == analysis.best && analysis.fits.size() > 1 ? " (best)" : ""));
   section.soft(fmt::format("mu = mu_0 + a ln(v/v0) + b ln(v0 theta/D_c){}, {}, dmu/dt = k (v_lp - v)",
-                           two ? " + b_2 ln(v0 theta_2/D_c2)" : "", equation_of(fit.evolution)));
+                           fit.states > 1 ? " + b_2 ln(v0 theta_2/D_c2)" : "", equation_of(fit.evolution)));
   if (!fit.converged) {
     for (const std::string& message : fit.messages) section.warning(message);
     return;
   }
   section.add(parameter_table_of(fit, motion));
-  const std::string held =
-      std::isfinite(fit.held_out_rmse) ? ", on steps held out " + significant(fit.held_out_rmse, 3) : "";
-  const std::string wanders = fit.noise_time > 0
-                                  ? fmt::format(", and {} that wanders over {} s", significant(fit.noise_slow, 2),
-                                                significant(fit.noise_time, 2))
-                                  : "";
+  std::string held, wanders;
+  if (std::isfinite(fit.held_out_rmse)) held = ", on steps held out " + significant(fit.held_out_rmse, 3);
+  if (fit.noise_time > 0) {
+    wanders =
+        fmt::format(", and {} that wanders over {} s", significant(fit.noise_slow, 2), significant(fit.noise_time, 2));
+  }
   section.soft(fmt::format("RMSE {}{}; noise of a sample {}{}.", significant(fit.rmse, 3), held,
                            significant(fit.noise_white, 2), wanders));
   for (const std::string& message : fit.messages) section.item(message);
 }
 
 /// That a second state variable was asked for by the data, or not.
-void add_states(const RateStateAnalysis& analysis, ReportSection& section) {
-  if (analysis.second_state == SecondState::found) {
-    section.plain(std::isfinite(analysis.states_p_value)
-                      ? fmt::format("A second state variable describes these steps better than one ({}).",
-                                    p_value_text(analysis.states_p_value))
-                      : "Two state variables describe these steps; no fit of one converged.");
-  }
+std::string states_sentence(const RateStateAnalysis& analysis) {
   if (analysis.second_state == SecondState::not_needed)
-    section.plain("A second state variable describes these steps no better than chance would (--states 2 shows it).");
+    return "A second state variable describes these steps no better than chance would (--states 2 shows it).";
+  if (analysis.second_state != SecondState::found) return "";
+  if (!std::isfinite(analysis.states_p_value))
+    return "Two state variables describe these steps; no fit of one converged.";
+  return "A second state variable describes these steps better than one" + chance(analysis.states_p_value) + ".";
 }
 
 ReportTable steps_table(const RateStateAnalysis& analysis) {
   ReportTable table("Steps");
   const bool moved = std::any_of(analysis.steps.begin(), analysis.steps.end(),
                                  [](const VelocityStep& step) { return step.time != step.recorded; });
-  table.numbers({"no."}).numbers({"time [s]"});
+  const bool over_time = analysis.detrend == Detrend::time;
+  table.numbers({"no.", "time [s]"});
   if (moved) table.numbers({"recorded [s]"});
-  table.numbers({"from [um/s]", "to [um/s]"})
-      .numbers({"hold [s]"}, 1)
-      .numbers({"samples"}, 1)
-      .numbers({"interval [s]"}, 2)
-      .numbers({"mu_0"}, 1)
-      .numbers({"trend"}, 2);
+  table.numbers({"from [um/s]", "to [um/s]"}).numbers({"hold [s]", "samples"}, 1);
+  table.numbers({"interval [s]"}, 2).numbers({"mu_0"}, 1).numbers({"trend"}, 2);
   const RateStateFit* fit = analysis.fitted() ? &analysis.fits[analysis.best] : nullptr;
   for (std::size_t s = 0; s < analysis.steps.size(); ++s) {
     const VelocityStep& step = analysis.steps[s];
-    const bool over_time = analysis.detrend == Detrend::time;
-    const double unit = over_time ? 1 : 1 / kMillimetre;
     std::string base, trend;
-    if (fit != nullptr) {
-      base = with_error(fit->base_friction[s].value, fit->base_friction[s].std_error);
-      if (analysis.detrend != Detrend::none)
-        trend = with_error(fit->trend[s].value / unit, fit->trend[s].std_error / unit) + (over_time ? " 1/s" : " 1/mm");
-    }
-    std::vector<std::string> row = {std::to_string(s + 1)};
-    row.push_back(std::isfinite(step.time_std_error) ? with_error(step.time, step.time_std_error)
-                                                     : significant(step.time, 6));
+    if (fit != nullptr) base = estimate_text(fit->base_friction[s]);
+    if (fit != nullptr && analysis.detrend != Detrend::none)
+      trend = over_time ? estimate_text(fit->trend[s], 1, "1/s") : estimate_text(fit->trend[s], 1e3, "1/mm");
+    auto& row = table.rows.emplace_back();
+    row = {std::to_string(s + 1),
+           std::isfinite(step.time_std_error) ? with_error(step.time, step.time_std_error) : significant(step.time, 6)};
     if (moved) row.push_back(significant(step.recorded, 6));
     row.insert(row.end(), {significant(step.before / kMicrometre, 4), significant(step.after / kMicrometre, 4),
                            step.hold > 0 ? significant(step.hold, 4) : "", grouped(step.samples),
                            significant(step.interval, 3), base, trend});
-    table.rows.push_back(std::move(row));
   }
   return table;
 }
@@ -120,22 +110,15 @@ ReportTable each_table(const RateStateAnalysis& analysis, const Motion& motion) 
   table.numbers({"no."});
   for (const FitParameter& p : analysis.fits[analysis.best].parameters)
     table.numbers({with_unit(p.parameter.name, shown_unit(p, motion))});
-  table.numbers({"a - b"}).numbers({"k/k_c"}, 1).numbers({"RMSE"}, 1);
+  table.numbers({"a - b"}).numbers({"k/k_c", "RMSE"}, 1);
   for (const RateStateFit& fit : analysis.each) {
-    std::vector<std::string> row = {std::to_string(*fit.step + 1)};
-    if (!fit.converged) {
-      row.resize(table.columns.size(), "-");
-      table.rows.push_back(std::move(row));
-      continue;
-    }
+    auto& row = table.rows.emplace_back(1, std::to_string(*fit.step + 1));
+    row.resize(fit.converged ? 1 : table.columns.size(), "-");
+    if (!fit.converged) continue;
     for (const FitParameter& p : fit.parameters)
       row.push_back(p.determined ? with_error(shown(p, p.value), shown(p, p.std_error)) : "not determined");
-    row.push_back(std::isfinite(fit.rate_dependence.value)
-                      ? with_error(fit.rate_dependence.value, fit.rate_dependence.std_error)
-                      : "-");
-    row.push_back(std::isfinite(fit.stiffness_ratio) ? significant(fit.stiffness_ratio, 3) : "-");
-    row.push_back(significant(fit.rmse, 3));
-    table.rows.push_back(std::move(row));
+    row.push_back(std::isfinite(fit.rate_dependence.value) ? estimate_text(fit.rate_dependence) : "-");
+    row.insert(row.end(), {significant(fit.stiffness_ratio, 3), significant(fit.rmse, 3)});
   }
   return table;
 }
@@ -145,68 +128,46 @@ void add_holds(const Healing& healing, ReportSection& section) {
   ReportTable table;
   table.numbers({"no.", "hold [s]", "sliding", "peak", "healing", "relaxation"});
   for (const HoldMeasures& hold : healing.holds) {
-    table.rows.push_back({std::to_string(hold.step + 1), significant(hold.duration, 4),
-                          with_error(hold.sliding.value, hold.sliding.std_error),
-                          with_error(hold.peak.value, hold.peak.std_error), significant(hold.healing, 3),
-                          significant(hold.relaxation, 3)});
+    table.rows.push_back({std::to_string(hold.step + 1), significant(hold.duration, 4), estimate_text(hold.sliding),
+                          estimate_text(hold.peak), significant(hold.healing, 3), significant(hold.relaxation, 3)});
   }
   section.add(std::move(table));
-  if (!std::isfinite(healing.per_decade.value)) {
+  if (std::isfinite(healing.per_decade.value)) {
+    section.plain(fmt::format("Healing rate: {} for a tenfold time at rest; the response that was fitted heals by {}.",
+                              estimate_text(healing.per_decade), significant(healing.per_decade_model, 3)));
+  } else {
     section.soft("A healing rate needs three holds of different length.");
-    return;
   }
-  section.plain(fmt::format("Healing rate: {} for a tenfold time at rest; the response that was fitted heals by {}.",
-                            with_error(healing.per_decade.value, healing.per_decade.std_error),
-                            significant(healing.per_decade_model, 3)));
 }
 
 void add_which_law(const RateStateAnalysis& analysis, ReportSection& section) {
   if (analysis.fits.size() != 2 || !std::isfinite(analysis.law_p_value)) return;
   const RateStateFit &best = analysis.fits[analysis.best], &other = analysis.fits[1 - analysis.best];
-  const bool held = std::isfinite(best.held_out_rmse) && std::isfinite(other.held_out_rmse);
-  const std::string figures =
-      fmt::format("RMSE {} against {}{}", significant(best.rmse, 4), significant(other.rmse, 4),
-                  held ? fmt::format(", on steps held out {} against {}", significant(best.held_out_rmse, 4),
-                                     significant(other.held_out_rmse, 4))
-                       : "");
-  const std::string p_value = p_value_text(analysis.law_p_value);
-  section.heading("Which law");
-  if (best.lacks.value_or(false)) {
-    section.plain(
-        fmt::format("Neither law describes these steps; the {} law is nearer ({}). Which of them holds can be "
-                    "judged once the model has what it lacks.",
-                    to_string(best.evolution), figures));
-    return;
-  }
+  const auto against = [](double a, double b) { return significant(a, 4) + " against " + significant(b, 4); };
+  std::string figures = "RMSE " + against(best.rmse, other.rmse);
+  if (std::isfinite(best.held_out_rmse) && std::isfinite(other.held_out_rmse))
+    figures += ", on steps held out " + against(best.held_out_rmse, other.held_out_rmse);
   constexpr double kDistinguished = 0.05;
-  const bool distinguished = analysis.law_p_value < kDistinguished;
-  section.plain(
-      distinguished
-          ? fmt::format("The {} law describes these steps better than the {} law ({}, {}).", to_string(best.evolution),
-                        to_string(other.evolution), figures, p_value)
-          : fmt::format("These data do not distinguish the {} law from the {} law ({}, {}). Steps of a factor "
-                        "of ten or more, up and down, would.",
-                        to_string(best.evolution), to_string(other.evolution), figures, p_value));
-  if (!distinguished && std::isfinite(other.rate_dependence.value))
+  const bool lacks = best.lacks.value_or(false), distinguished = analysis.law_p_value < kDistinguished;
+  section.heading("Which law");
+  section.plain(fmt::format(
+      fmt::runtime(lacks ? "Neither law describes these steps; the {0} law is nearer ({2}). Which of them holds can be "
+                           "judged once the model has what it lacks."
+                   : distinguished
+                       ? "The {0} law describes these steps better than the {1} law ({2}, {3})."
+                       : "These data do not distinguish the {0} law from the {1} law ({2}, {3}). Steps of a factor of "
+                         "ten or more, up and down, would."),
+      to_string(best.evolution), to_string(other.evolution), figures, p_value_text(analysis.law_p_value)));
+  if (!lacks && !distinguished && std::isfinite(other.rate_dependence.value))
     section.plain(fmt::format("The result below is that of the {} law; by the {} law a - b = {}.",
                               to_string(best.evolution), to_string(other.evolution),
-                              with_error(other.rate_dependence.value, other.rate_dependence.std_error)));
+                              estimate_text(other.rate_dependence)));
 }
 
-}  // namespace
-
-std::string source_text(LoadPointSource source) {
-  constexpr std::array<const char*, 3> kTexts = {"stated", "its recorded speed", "its recorded displacement"};
-  return kTexts.at(static_cast<std::size_t>(source));
+const char* source_text(LoadPointSource source) {
+  constexpr const char* kTexts[] = {"stated", "its recorded speed", "its recorded displacement"};
+  return kTexts[static_cast<std::size_t>(source)];
 }
-
-std::string sliding_speed_text(double speed) {
-  if (speed == 0) return "0";
-  if (speed < 0.1 * kMicrometre) return brief(1e9 * speed) + " nm/s";
-  return speed < kMillimetre ? brief(speed / kMicrometre) + " um/s" : brief(speed / kMillimetre) + " mm/s";
-}
-
-namespace {
 
 /// Speeds that last, in order; those of the way from one to the other aside.
 std::vector<double> speeds_of(const Motion& motion, const RateStateAnalysis* analysis) {
@@ -225,27 +186,32 @@ std::vector<double> speeds_of(const Motion& motion, const RateStateAnalysis* ana
 
 }  // namespace
 
+std::string sliding_speed_text(double speed) {
+  if (speed == 0) return "0";
+  if (speed < 0.1 * kMicrometre) return brief(1e9 * speed) + " nm/s";
+  return speed < kMillimetre ? brief(speed / kMicrometre) + " um/s" : brief(speed / kMillimetre) + " mm/s";
+}
+
 Facts load_point_facts(const Motion& motion, const RateStateAnalysis* analysis) {
   constexpr std::size_t kMost = 12;
   std::vector<std::string> speeds;
   const std::vector<double> all = speeds_of(motion, analysis);
-  for (const double speed : all) {
-    if (speeds.size() < kMost) speeds.push_back(sliding_speed_text(speed));
-  }
+  for (std::size_t k = 0; k < std::min(all.size(), kMost); ++k) speeds.push_back(sliding_speed_text(all[k]));
   if (all.size() > kMost) speeds.push_back(fmt::format("... ({} in all)", all.size()));
-  Facts facts = {
-      {"load point", fmt::format("{} ({})", fmt::join(speeds, ", "), source_text(motion.load_point_source))}};
-  if (motion.normal_stress.known())
-    facts.emplace_back("normal stress", fmt::format("{} MPa ({})", brief(1e-6 * motion.normal_stress.value),
-                                                    motion.normal_stress.source));
+  Facts facts;
+  const auto add = [&](const char* name, const std::string& value, const std::string& source) {
+    facts.emplace_back(name, value + " (" + source + ")");
+  };
+  add("load point", fmt::format("{}", fmt::join(speeds, ", ")), source_text(motion.load_point_source));
+  if (const Condition& stress = motion.normal_stress; stress.known())
+    add("normal stress", brief(1e-6 * stress.value) + " MPa", stress.source);
   if (analysis == nullptr || !(analysis->reference_speed > 0)) return facts;
-  facts.emplace_back("v0",
-                     fmt::format("{} ({})", sliding_speed_text(analysis->reference_speed), analysis->reference_source));
-  const bool none = analysis->detrend == Detrend::none;
-  facts.emplace_back(
-      "trend", none ? "none is taken off"
-                    : fmt::format("a line over {} is taken off each step",
-                                  analysis->detrend == Detrend::time ? "time" : "the displacement of the load point"));
+  add("v0", sliding_speed_text(analysis->reference_speed), analysis->reference_source);
+  const char* line = analysis->detrend == Detrend::none   ? "none is taken off"
+                     : analysis->detrend == Detrend::time ? "a line over time is taken off each step"
+                                                          : "a line over the displacement of the load point is taken "
+                                                            "off each step";
+  facts.emplace_back("trend", line);
   return facts;
 }
 
@@ -255,16 +221,15 @@ void add_rate_state(const RateStateAnalysis& analysis, const Motion& motion, Rep
   for (std::size_t k = 0; k < analysis.fits.size(); ++k) add_law(analysis, k, motion, section);
   if (!analysis.is_answered()) return;
   add_which_law(analysis, section);
-  add_states(analysis, section);
+  section.plain(states_sentence(analysis));
   section.add(each_table(analysis, motion));
   if (std::isfinite(analysis.sharing_p_value)) {
     constexpr double kDiffer = 0.01;
-    section.plain(
-        analysis.sharing_p_value < kDiffer
-            ? fmt::format("The steps differ by more than their errors ({}): the values of each step count, "
-                          "and those of all together are a compromise.",
-                          p_value_text(analysis.sharing_p_value))
-            : fmt::format("The steps agree within their errors ({}).", p_value_text(analysis.sharing_p_value)));
+    const std::string tested = chance(analysis.sharing_p_value);
+    section.plain(analysis.sharing_p_value < kDiffer
+                      ? "The steps differ by more than their errors" + tested +
+                            ": the values of each step count, and those of all together are a compromise."
+                      : "The steps agree within their errors" + tested + ".");
   }
   if (analysis.healing) add_holds(*analysis.healing, section);
 }
@@ -273,36 +238,127 @@ std::string verdict_on(const RateStateAnalysis& analysis) {
   if (!analysis.fitted()) return capitalised(analysis.reason) + ".";
   const RateStateFit& fit = analysis.fits[analysis.best];
   if (!analysis.is_answered())
-    return fmt::format(
-        "Friction answers the steps by no more than noise would ({}): these data say nothing of the law.",
-        p_value_text(analysis.answer_p_value));
-  if (!std::isfinite(fit.rate_dependence.value))
-    return "Whether steady friction rises or falls with speed is not known from these data: a or b ended at a bound.";
-  const std::string rate = with_error(fit.rate_dependence.value, fit.rate_dependence.std_error);
-  if (fit.rate_dependence_lower95 > 0 && !std::isfinite(fit.stiffness_ratio))
-    return fmt::format(
-        "Steady friction rises with speed (a - b = {}): sliding is stable on any machine{}.", rate,
-        fit.states > 1 ? ", but perhaps a soft one, where the quicker state alone lets it fall" : ", however soft");
-  const bool rises = fit.rate_dependence_lower95 > 0;  // while the quick one of two states alone falls
-  if (!rises && !(fit.rate_dependence_upper95 < 0))
-    return fmt::format("Whether steady friction rises or falls with speed is not known from these data (a - b = {}).",
-                       rate);
-  std::string text = fmt::format("Steady friction {} with speed (a - b = {})", rises ? "rises" : "falls", rate);
-  if (!std::isfinite(fit.stiffness_ratio)) return text + ": sliding is not stable on a machine that is soft enough.";
+    return "Friction answers the steps by no more than noise would" + chance(analysis.answer_p_value) +
+           ": these data say nothing of the law.";
+  const std::string unknown = "Whether steady friction rises or falls with speed is not known from these data";
+  if (!std::isfinite(fit.rate_dependence.value)) return unknown + ": a or b ended at a bound.";
+  const std::string rate = " (a - b = " + estimate_text(fit.rate_dependence) + ")";
+  const bool rises = fit.rate_dependence_lower95 > 0, two = fit.states > 1,
+             limited = std::isfinite(fit.stiffness_ratio);
+  if (!rises && !(fit.rate_dependence_upper95 < 0)) return unknown + rate + ".";
+  std::string text = fmt::format("Steady friction {} with speed{}", rises ? "rises" : "falls", rate);
+  if (!limited && !rises) return text + ": sliding is not stable on a machine that is soft enough.";
+  if (!limited)
+    return text + ": sliding is stable on any machine" +
+           (two ? ", but perhaps a soft one, where the quicker state alone lets it fall." : ", however soft.");
   const FitParameter &distance = fit.parameters[2], &stiffness = fit.parameters.back();
+  const std::string& unit = stiffness.parameter.unit;
   text += fmt::format("{} sliding is unstable, and sticks and slips, on a machine softer than {}{} {} {}{}",
-                      rises ? ", and yet" : ":", critical_stiffness_text(fit), fit.states > 1 ? "," : " =",
-                      significant(fit.critical_stiffness * kMicrometre, 3), stiffness.parameter.unit,
-                      stiffness.parameter.unit == "1/um" ? " per normal force" : "");
+                      rises ? ", and yet" : ":", critical_stiffness_text(fit), two ? "," : " =",
+                      significant(fit.critical_stiffness * kMicrometre, 3), unit,
+                      unit == "1/um" ? " per normal force" : "");
   if (!stiffness.determined || !distance.determined) return text + "; k of this one is not resolved.";
-  const std::string ratio = significant(fit.stiffness_ratio, 3);
-  if (fit.stiffness_ratio_lower95 > 1)
-    return text + fmt::format(". This machine is {} times as stiff: it slides steadily.", ratio);
-  if (fit.stiffness_ratio_upper95 < 1)
-    return text + fmt::format(". This machine has {} of that: it {} stick and slip (--kind stick-slip).", ratio,
-                              rises ? "may" : "will");
-  return text +
-         fmt::format(". This machine has {} of that, which the data do not tell from the critical stiffness.", ratio);
+  // With two states it rises while the quick one alone falls.
+  return text + fmt::format(fmt::runtime(fit.stiffness_ratio_lower95 > 1
+                                             ? ". This machine is {0} times as stiff: it slides steadily."
+                                         : fit.stiffness_ratio_upper95 < 1
+                                             ? ". This machine has {0} of that: it {1} stick and slip (--kind "
+                                               "stick-slip)."
+                                             : ". This machine has {0} of that, which the data do not tell from the "
+                                               "critical stiffness."),
+                            significant(fit.stiffness_ratio, 3), rises ? "may" : "will");
+}
+
+namespace {
+
+Json estimate_of(const Estimate& e, double unit = 1) {
+  return object("value", e.value / unit, "std_error", e.std_error / unit);
+}
+
+Json stability_json(const RateStateFit& fit) {
+  const bool limited = std::isfinite(fit.stiffness_ratio);
+  Json rate = estimate_of(fit.rate_dependence);
+  rate["ci95"] = interval_json(fit.rate_dependence_lower95, fit.rate_dependence_upper95);
+  return object("a_minus_b", rate, "critical_stiffness_per_um", fit.critical_stiffness / 1e6, "stiffness_over_critical",
+                fit.stiffness_ratio, "stiffness_over_critical_ci95",
+                interval_json(limited ? fit.stiffness_ratio_lower95 : std::nan(""),
+                              limited ? fit.stiffness_ratio_upper95 : std::nan("")));
+}
+
+Json step_json(const RateStateAnalysis& analysis, std::size_t s, const Motion& motion) {
+  const VelocityStep& step = analysis.steps[s];
+  const RateStateFit* whole = analysis.fitted() ? &analysis.fits[analysis.best] : nullptr;
+  const bool trended = whole != nullptr && analysis.detrend != Detrend::none;
+  const RateStateFit* own = s < analysis.each.size() && analysis.each[s].converged ? &analysis.each[s] : nullptr;
+  Json json = object("time_s", step.time, "time_std_error_s", step.time_std_error, "recorded_time_s", step.recorded,
+                     "from_um_s", step.before / kMicrometre, "to_um_s", step.after / kMicrometre, "hold_s", step.hold,
+                     "samples", step.samples, "window_s", interval_json(step.from, step.to), "mu_0", nullptr, "trend",
+                     nullptr, "own_fit", nullptr);
+  if (whole != nullptr) json["mu_0"] = estimate_of(whole->base_friction[s]);
+  if (trended) json["trend"] = estimate_of(whole->trend[s], analysis.detrend == Detrend::time ? 1 : 1 / kMillimetre);
+  if (own == nullptr) return json;
+  json["own_fit"] =
+      object("parameters", list_of(own->parameters, [&](const FitParameter& p) { return parameter_json(p, motion); }),
+             "rmse", own->rmse, "messages", own->messages);
+  json["own_fit"].update(stability_json(*own));
+  return json;
+}
+
+Json healing_json(const Healing& healing) {
+  const auto hold = [](const HoldMeasures& h) {
+    return object("step_index", h.step, "hold_s", h.duration, "sliding", estimate_of(h.sliding), "peak",
+                  estimate_of(h.peak), "healing", h.healing, "relaxation", h.relaxation);
+  };
+  return object("holds", list_of(healing.holds, hold), "per_decade", estimate_of(healing.per_decade),
+                "per_decade_model", healing.per_decade_model);
+}
+
+}  // namespace
+
+Json rate_state_fits_json(const RateStateAnalysis& analysis, const Motion& motion) {
+  return list_of(analysis.fits, [&](const RateStateFit& fit) {
+    ResultFit out;
+    out.law = law_name(fit.evolution);
+    out.protocol = "joint";
+    add_parameters(fit.parameters, fit.correlations, motion, out);
+    const std::size_t n = fit.parameters.size();
+    // In the units in which the parameters are shown: of D and k the search has the covariance of the logarithm.
+    const auto scale = [&](std::size_t k) {
+      const FitParameter& p = fit.parameters[k];
+      return p.parameter.unit != "1" ? shown(p, p.value) : 1.0;
+    };
+    out.covariance.resize(fit.converged ? n : 0);
+    for (std::size_t i = 0; i < out.covariance.size(); ++i) {
+      for (std::size_t j = 0; j < n; ++j) out.covariance[i].push_back(scale(i) * scale(j) * fit.covariance[i * n + j]);
+    }
+    out.degrees_of_freedom = fit.degrees_of_freedom;
+    out.rmse = fit.rmse;
+    out.held_out_rmse = fit.held_out_rmse;
+    out.floor_rmse = std::hypot(fit.noise_white, fit.noise_slow);
+    out.noise = fit.noise_white;
+    out.slow_noise = fit.noise_slow;
+    out.floor_source = "residuals";
+    out.mean_relative = out.max_relative = out.explained = out.stick_creep = out.fastest = std::nan("");
+    out.converged = fit.converged;
+    out.samples = fit.samples;
+    out.messages = fit.messages;
+    return json_of(out);
+  });
+}
+
+Json rate_state_json(const RateStateAnalysis& analysis, const Motion& motion) {
+  const bool none = analysis.fits.empty();
+  Json steps = Json::array();
+  for (std::size_t s = 0; s < analysis.steps.size(); ++s) steps.push_back(step_json(analysis, s, motion));
+  return object("v0_um_s", analysis.reference_speed / kMicrometre, "v0_source", analysis.reference_source,
+                "load_point_source", source_text(motion.load_point_source), "detrend", to_string(analysis.detrend),
+                "normal_stress_MPa", motion.normal_stress.value / 1e6, "states",
+                none ? Json(nullptr) : Json(analysis.states), "states_p_value", analysis.states_p_value,
+                "answer_p_value", analysis.answer_p_value, "law_p_value", analysis.law_p_value, "sharing_p_value",
+                analysis.sharing_p_value, "stability",
+                analysis.is_answered() ? stability_json(analysis.fits[analysis.best]) : Json(nullptr), "steps",
+                std::move(steps), "healing", analysis.healing ? healing_json(*analysis.healing) : Json(nullptr),
+                "messages", analysis.messages, "reason", text_or_null(analysis.reason));
 }
 
 }  // namespace tribofit

@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
 #include "output/json.hpp"
 #include "tribofit/fit/identification.hpp"
 #include "tribofit/report/report.hpp"
@@ -14,8 +13,6 @@ namespace tribofit {
 
 /// "10 um/s", "2.5 mm/s": in the unit in which it is no small part of one.
 std::string sliding_speed_text(double speed);
-/// "stated", "its recorded displacement".
-std::string source_text(LoadPointSource source);
 /// Load point, normal stress, v0 and the line that is taken off.
 Facts load_point_facts(const Motion& motion, const RateStateAnalysis* analysis);
 /// Laws, which of them, each step, holds.

@@ -1,7 +1,5 @@
 #include "report_parts.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <functional>
@@ -9,7 +7,6 @@
 #include <set>
 #include <utility>
 
-#include "numbers.hpp"
 #include "report/pictures/text.hpp"
 #include "tribofit/execution/parallel.hpp"
 #include "tribofit/version.hpp"
@@ -156,6 +153,12 @@ ReportSection run_section(const Report& report, const std::string& command, std:
   }
   section.soft(fmt::format("Made by tribofit {}. Charts by plotly.js (MIT licence).{}", version, more));
   return section;
+}
+
+ReportSection run_section(const Report& report, const std::string& verb, const ReportOptions& options,
+                          const Identification& trace) {
+  const std::string path = options.inputs.empty() ? trace.path : options.inputs.front();
+  return run_section(report, command_line(words_of({verb}, options.arguments), {path}), {&trace, 1});
 }
 
 }  // namespace tribofit

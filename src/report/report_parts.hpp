@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <array>
 #include <functional>
 #include <span>
@@ -7,6 +9,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "numbers.hpp"
 #include "report/charts/trace_charts.hpp"
 
 namespace tribofit {
@@ -15,22 +18,14 @@ namespace tribofit {
 
 /// "sliding (stated)", "points (no time column)", "stick-slip".
 std::string kind_text(const Identification& record);
-/// "100 000 samples, 5.000 s at 20 kHz".
-std::string record_sentence(const Identification& record);
 /// Cycles, frequency, amplitude, stick and slip time, branches, RMS.
 Facts stick_slip_facts(const Identification& record);
-/// That sentence, radius, disc speed and load with where each comes from, and those facts.
-Facts facts_of(const Identification& record);
+/// Adds kind, size, radius, disc speed and load with where each comes from, and those facts to the head of a page.
+void add_facts(const Identification& record, Report& report);
 /// Checks, the worst first; with the trace each belongs to where there are several.
 ReportTable health_table(std::span<const Identification> traces);
 /// Name, size and reading of the trace, conditions and health: how the text of identify, rig and twin begins.
 ReportSection record_section(const Identification& record);
-
-/// How good the best fit is, in one sentence an engineer would say.
-std::string verdict(const Identification& result);
-
-/// What to do next with a trace and its fits.
-Suggestion next_command(const Identification& result, const ReportOptions& options);
 
 /// Every fit with its equation, parameters, errors, correlations and notes, and what their intervals are; nothing where
 /// there are no fits.
@@ -74,6 +69,7 @@ std::vector<const Fit*> drawn_curves(const std::vector<const Fit*>& models, std:
 struct TraceSections {
   ReportSection trace{"trace", "Model and measurement", {}}, law{"law", "Friction law", {}},
       errors{"errors", "Errors", {}}, cycles{"cycles", "Cycles and spectrum", {}};
+  std::array<ReportSection*, 4> all() { return {&trace, &law, &errors, &cycles}; }
   void add_trace(const DrawnTrace& drawn);
   /// A footnote below the errors: where their measure comes from.
   void add_sources();
@@ -89,6 +85,10 @@ ReportSection result_section(const Report& report, const std::string& title = "R
 ReportSection run_section(const Report& report, const std::string& command, std::span<const Identification> traces = {},
                           const std::string& more = "");
 
+/// The same of a command that takes a trace: `verb` with the user's own options.
+ReportSection run_section(const Report& report, const std::string& verb, const ReportOptions& options,
+                          const Identification& trace);
+
 /// A quantity of the rig, in the unit people read.
 struct ShownRigValue {
   const char* name;
@@ -96,14 +96,10 @@ struct ShownRigValue {
   double si;         ///< of one unit
   const char* unit;  ///< as a table shows it
   const char* key;   ///< as JSON names it
+  std::string text() const;
 };
-struct ShownRig {
-  ShownRigValue mass, damping, stiffness, natural_frequency, damping_ratio, stick_slope_stiffness;
-  std::array<ShownRigValue, 6> all() const {
-    return {mass, damping, stiffness, natural_frequency, damping_ratio, stick_slope_stiffness};
-  }
-};
-/// Per newton of the load where that is not known.
-ShownRig shown_rig(const RigFit& rig);
+/// Mass, damping, stiffness, natural frequency, damping ratio, stiffness by the slope of stick; per newton of the load
+/// where that is not known.
+std::array<ShownRigValue, 6> shown_rig(const RigFit& rig);
 
 }  // namespace tribofit

@@ -1,25 +1,24 @@
-#include <fmt/format.h>
-
-#include <array>
 #include <cmath>
 
 #include "json_parts.hpp"
-#include "numbers.hpp"
 #include "report_parts.hpp"
-#include "tribofit/report/json.hpp"
 
 namespace tribofit {
 
-ShownRig shown_rig(const RigFit& rig) {
+std::array<ShownRigValue, 6> shown_rig(const RigFit& rig) {
   const bool per = rig.per_unit_load;
   const char *stiffness = per ? "1/mm" : "N/mm", *damping = per ? "s/mm" : "N s/mm";
-  return {{"mass", rig.mass, 1, per ? "kg/N" : "kg", per ? "mass_kg_per_N" : "mass_kg"},
-          {"damping", rig.damping, 1e3, damping, per ? "damping_s_per_mm" : "damping_N_s_per_mm"},
-          {"stiffness", rig.stiffness, 1e3, stiffness, per ? "stiffness_per_mm" : "stiffness_N_per_mm"},
-          {"natural frequency", rig.natural_frequency, 1, "Hz", "natural_frequency_hz"},
-          {"damping ratio", rig.damping_ratio, 1, "1", "damping_ratio"},
-          {"stiffness by stick", rig.stick_slope_stiffness, 1e3, stiffness,
-           per ? "stick_slope_stiffness_per_mm" : "stick_slope_stiffness_N_per_mm"}};
+  return {{{"mass", rig.mass, 1, per ? "kg/N" : "kg", per ? "mass_kg_per_N" : "mass_kg"},
+           {"damping", rig.damping, 1e3, damping, per ? "damping_s_per_mm" : "damping_N_s_per_mm"},
+           {"stiffness", rig.stiffness, 1e3, stiffness, per ? "stiffness_per_mm" : "stiffness_N_per_mm"},
+           {"natural frequency", rig.natural_frequency, 1, "Hz", "natural_frequency_hz"},
+           {"damping ratio", rig.damping_ratio, 1, "1", "damping_ratio"},
+           {"stiffness by stick", rig.stick_slope_stiffness, 1e3, stiffness,
+            per ? "stick_slope_stiffness_per_mm" : "stick_slope_stiffness_N_per_mm"}}};
+}
+
+std::string ShownRigValue::text() const {
+  return estimate_text({value.value, value.std_error}, si, unit);
 }
 
 namespace {
@@ -27,7 +26,7 @@ namespace {
 ReportTable rig_table(const RigFit& rig) {
   std::vector<ShownValue> values;
   std::vector<std::string> systematic;
-  for (const ShownRigValue& q : shown_rig(rig).all()) {
+  for (const ShownRigValue& q : shown_rig(rig)) {
     const RigValue& v = q.value;
     if (!v.determined) continue;
     values.push_back({q.name, v.value / q.si, v.std_error / q.si, v.lower95 / q.si, v.upper95 / q.si, q.unit});
@@ -41,50 +40,49 @@ ReportTable rig_table(const RigFit& rig) {
 /// Where the values come from, how they were checked, and what limits them.
 Facts behind_rig(const RigFit& rig) {
   Facts facts;
-  if (rig.stiffness.determined && rig.mass.determined) {
+  const bool found = rig.stiffness.determined && rig.mass.determined;
+  if (found) {
     facts.emplace_back(
         "from", fmt::format("force balance over {} cycles; its residual is {} {} (RMS of means over {} "
                             "ms)",
                             rig.cycles, significant(rig.residual_rmse, 2), rig.per_unit_load ? "of the load" : "N",
                             significant(rig.smoothing / kMillisecond, 2)));
-    if (rig.stick_slope_stiffness.determined) {
-      facts.emplace_back("check", fmt::format("the stiffness from the force balance is {} standard errors from that by "
-                                              "the slope of stick, N (dmu/dt)/(omega r)",
-                                              with_sign(rig.stick_slope_difference, 1)));
-    }
+  }
+  if (found && rig.stick_slope_stiffness.determined) {
+    facts.emplace_back("check", fmt::format("the stiffness from the force balance is {} standard errors from that by "
+                                            "the slope of stick, N (dmu/dt)/(omega r)",
+                                            with_sign(rig.stick_slope_difference, 1)));
   }
   for (const std::string& message : rig.messages) facts.emplace_back("note", message);
   return facts;
 }
 
 Suggestion next_of(const RigIdentification& result, const ReportOptions& options) {
-  const Identification& trace = result.trace;
+  const Motion& motion = result.trace.motion;
   const auto of_verb = [&](std::vector<std::string> verb, const std::vector<std::string>& more = {}) {
-    return command_line(joined(words_of(std::move(verb), options.arguments, {"--keep-high-pass"}), more), {trace.path});
+    return command_line(joined(words_of(std::move(verb), options.arguments, {"--keep-high-pass"}), more),
+                        {result.trace.path});
   };
-  const bool sticks = trace.segmentation.kind == MotionKind::stick_slip;
-  if (sticks && trace.motion.high_pass == 0 && trace.motion.size() > 0 &&
-      has_option(options.arguments, "--keep-high-pass")) {
-    return {"to undo the high-pass", of_verb({"rig"})};
-  }
-  if (!result.rig.determined) return {"to see the trace, its health and its law", of_verb({})};
-  if (!sticks) return {"to see where its law fails and which effect explains it", of_verb({"diagnose"})};
+  const bool sticks = result.trace.segmentation.kind == MotionKind::stick_slip;
+  const bool kept = motion.high_pass == 0 && motion.size() > 0 && has_option(options.arguments, "--keep-high-pass");
   std::vector<std::string> radius;
-  if (!trace.motion.conditions.radius.known()) radius = {"--radius", "15mm"};
-  return {"to put the motion that law and rig predict beside the measured one", of_verb({"twin"}, radius)};
+  if (!motion.conditions.radius.known()) radius = {"--radius", "15mm"};
+  return first_of(
+      {{sticks && kept, "to undo the high-pass", of_verb({"rig"})},
+       {!result.rig.determined, "to see the trace, its health and its law", of_verb({})},
+       {!sticks, "to see where its law fails and which effect explains it", of_verb({"diagnose"})},
+       {true, "to put the motion that law and rig predict beside the measured one", of_verb({"twin"}, radius)}});
 }
 
 std::string verdict_on(const RigFit& rig) {
   if (!rig.determined) return "The rig could not be identified: " + rig.reason + ".";
-  const ShownRig shown = shown_rig(rig);
+  const auto [mass, damping, stiffness, frequency, ratio, by_stick] = shown_rig(rig);
   const auto text_of = [](const ShownRigValue& q, int digits) {
     return significant(q.value.value / q.si, digits) + unit_behind(q.unit);
   };
-  std::string text =
-      fmt::format("The block is {} on {}; its natural frequency is {}, its damping ratio {}.", text_of(shown.mass, 3),
-                  text_of(shown.stiffness, 3), text_of(shown.natural_frequency, 3), text_of(shown.damping_ratio, 2));
-  if (rig.damping_doubtful) text += " Do not rely on the damping: a note says why.";
-  return text;
+  return fmt::format("The block is {} on {}; its natural frequency is {}, its damping ratio {}.{}", text_of(mass, 3),
+                     text_of(stiffness, 3), text_of(frequency, 3), text_of(ratio, 2),
+                     rig.damping_doubtful ? " Do not rely on the damping: a note says why." : "");
 }
 
 Json value_json(const RigValue& v, double si) {
@@ -98,13 +96,12 @@ Json value_json(const RigValue& v, double si) {
 Json rig_json(const RigFit& rig) {
   Json json = object("determined", rig.determined, "reason", text_or_null(rig.reason), "per_unit_load",
                      rig.per_unit_load, "cycles", rig.cycles);
-  const auto values = shown_rig(rig).all();
+  const auto values = shown_rig(rig);
   for (const ShownRigValue& q : values) json[q.key] = value_json(q.value, q.si);
   Json rows = Json::array();
   for (std::size_t i = 0; i < 3 && rig.mass.determined; ++i) {
-    Json row = Json::array();
+    Json& row = rows.emplace_back(Json::array());
     for (std::size_t j = 0; j < 3; ++j) row.push_back(number(rig.covariance[3 * i + j] / values[i].si / values[j].si));
-    rows.push_back(std::move(row));
   }
   const bool checked = rig.stick_slope_stiffness.determined && rig.mass.determined;
   add_members(json, "covariance", std::move(rows), "stick_slope_difference_in_std_errors",
@@ -123,12 +120,10 @@ Report report_of(const RigIdentification& result, const ReportOptions& options) 
   Report report = titled_report("rig", file_name(trace.path), "Mass, damping and stiffness,", verdict_on(rig));
   report.warnings = trace.warnings;
   report.next = {next_of(result, options)};
-  for (const ShownRigValue& q : shown_rig(rig).all()) {
-    if (!q.value.determined) continue;
-    report.facts.emplace_back(q.name, with_error(q.value.value / q.si, q.value.std_error / q.si) + unit_behind(q.unit));
+  for (const ShownRigValue& q : shown_rig(rig)) {
+    if (q.value.determined) report.facts.emplace_back(q.name, q.text());
   }
-  const Facts record = facts_of(trace);
-  report.facts.insert(report.facts.end(), record.begin(), record.end());
+  add_facts(trace, report);
   ReportSection values{"rig", "Rig", {}};
   values.add(rig_table(rig));
   values.add(ReportFacts{behind_rig(rig)});
@@ -136,10 +131,8 @@ Report report_of(const RigIdentification& result, const ReportOptions& options) 
   if (options.charts) sections.add_trace(DrawnTrace(trace, {}, {}, "t1"));
   sections.trace.title = "The record";
   sections.trace.add(health_table({&trace, 1}), Medium::page);
-  const std::string path = options.inputs.empty() ? trace.path : options.inputs.front();
   report.add({record_section(trace), std::move(values), std::move(sections.trace), std::move(sections.cycles),
-              result_section(report),
-              run_section(report, command_line(words_of({"rig"}, options.arguments), {path}), {&trace, 1})});
+              result_section(report), run_section(report, "rig", options, trace)});
   return report;
 }
 

@@ -19,43 +19,40 @@ constexpr std::size_t kIndent = 2, kMostRows = 40;  // of tables
 
 namespace {
 
+using ColumnIndices = std::vector<std::size_t>;
+using Lines = std::vector<std::string>;
+
 /// The columns of a table up to a level of detail.
-ReportTable with_columns(const ReportTable& table, const std::vector<std::size_t>& kept) {
-  ReportTable out;
-  for (const std::size_t k : kept) out.columns.push_back(table.columns[k]);
-  for (const std::vector<std::string>& row : table.rows) {
-    std::vector<std::string>& own = out.rows.emplace_back();
-    for (const std::size_t k : kept) own.push_back(k < row.size() ? row[k] : "");
+ColumnIndices columns_of(const ReportTable& table, int detail) {
+  ColumnIndices columns;
+  for (std::size_t k = 0; k < table.columns.size(); ++k) {
+    if (table.columns[k].detail <= detail) columns.push_back(k);
   }
-  return out;
+  return columns;
 }
 
 /// Lines of a table that is too wide, in blocks of as many columns as fit; each block begins with the columns of text
 /// before the first number, which say what a row is of.
-std::vector<std::vector<std::string>> in_blocks(const ReportTable& table, std::size_t width) {
-  std::vector<std::size_t> heads, others;
-  for (std::size_t k = 0; k < table.columns.size(); ++k) {
-    if (table.columns[k].detail > 0) continue;
+std::vector<Lines> in_blocks(const ReportTable& table, std::size_t width) {
+  ColumnIndices heads, others;
+  for (const std::size_t k : columns_of(table, 0)) {
     (others.empty() && (heads.empty() || !table.columns[k].number) ? heads : others).push_back(k);
   }
-  std::set<std::string> first;
-  for (const std::vector<std::string>& row : table.rows) first.insert(row.empty() ? "" : row[0]);
-  if (heads.size() > 1 && first.size() == table.rows.size() &&
-      first.count("") == 0) {  // its name says what a row is of
-    others.insert(others.begin(), heads.begin() + 1, heads.end());
-    heads.resize(1);
-  }
-  const auto lines_of = [&](std::vector<std::size_t> columns, const std::vector<std::size_t>& more) {
+  const auto lines_of = [&](ColumnIndices columns, const ColumnIndices& more) {
     columns.insert(columns.end(), more.begin(), more.end());
-    return aligned(with_columns(table, columns), kIndent);
+    return aligned(table, kIndent, columns);
   };
-  while (heads.size() > 1 && widest(lines_of(heads, {})) > width / 2) {  // leave room for what they are of
-    others.insert(others.begin(), heads.back());
-    heads.pop_back();
-  }
-  std::vector<std::vector<std::string>> blocks;
+  const auto keep_heads = [&](std::size_t count) {
+    others.insert(others.begin(), heads.begin() + static_cast<std::ptrdiff_t>(count), heads.end());
+    heads.resize(count);
+  };
+  std::set<std::string> names;
+  for (const Lines& row : table.rows) names.insert(row.empty() ? "" : row[0]);
+  if (heads.size() > 1 && names.size() == table.rows.size() && !names.contains("")) keep_heads(1);
+  while (heads.size() > 1 && widest(lines_of(heads, {})) > width / 2) keep_heads(heads.size() - 1);
+  std::vector<Lines> blocks;
   for (std::size_t begin = 0, end = 0; begin < others.size(); begin = end) {
-    std::vector<std::size_t> columns;
+    ColumnIndices columns;
     for (end = begin; end < others.size(); ++end) {
       columns.push_back(others[end]);
       if (end > begin && widest(lines_of(heads, columns)) > width) break;
@@ -115,36 +112,18 @@ class TerminalText {
   }
 
   void item(const ReportText& item) {
+    using Text = ReportText::Kind;
     const std::string& text = item.text;
-    switch (item.kind) {
-      case ReportText::Kind::title:
-        text_ += in(kBold, wrapped(with_signs(text), width_, 2)) + "\n";
-        break;
-      case ReportText::Kind::heading:
-        heading(text);
-        break;
-      case ReportText::Kind::name:
-        text_ += "  " + in(kBold, text) + "\n";
-        break;
-      case ReportText::Kind::detail:
-        line(text, 4, 4);
-        break;
-      case ReportText::Kind::warning:
-        text_ += "  " + in(kYellow, "warning") + " " + wrapped(with_signs(text), width_, 10) + "\n";
-        break;
-      case ReportText::Kind::item:
-        line(text, 2, 4);
-        break;
-      case ReportText::Kind::command:
-        text_ += folded_command(text, width_) + "\n";
-        break;
-      case ReportText::Kind::drawing:
-        text_ += "\n" + text;
-        break;
-      case ReportText::Kind::plain:
-      case ReportText::Kind::soft:
-        line(text, 2, 2);
-    }
+    const auto is = [&](Text kind) { return item.kind == kind; };
+    if (is(Text::title)) text_ += in(kBold, wrapped(with_signs(text), width_, 2)) + "\n";
+    if (is(Text::heading)) heading(text);
+    if (is(Text::name)) text_ += "  " + in(kBold, text) + "\n";
+    if (is(Text::warning)) text_ += "  " + in(kYellow, "warning") + " " + wrapped(with_signs(text), width_, 10) + "\n";
+    if (is(Text::command)) text_ += folded_command(text, width_) + "\n";
+    if (is(Text::drawing)) text_ += "\n" + text;
+    if (is(Text::detail)) line(text, 4, 4);
+    if (is(Text::item)) line(text, 2, 4);
+    if (is(Text::plain) || is(Text::soft)) line(text, 2, 2);
   }
 
   void item(const ReportFacts& facts) {
@@ -169,38 +148,29 @@ class TerminalText {
     if (!table.caption.empty()) heading(table.caption);
     const std::size_t count = table.rows.size();
     table.rows.resize(std::min(kMostRows, count));
-    for (std::vector<std::string>& row : table.rows) {
+    for (Lines& row : table.rows) {
       for (std::string& cell : row) cell = with_signs(cell);
     }
     int detail = 0;
-    for (const ReportColumn& column : table.columns) detail = std::max(detail, column.detail);
+    bool named = false;
+    for (const ReportColumn& column : table.columns) {
+      detail = std::max(detail, column.detail);
+      named |= !column.name.empty();
+    }
     const ReportTable::Bars& bars = table.bars;
-    std::vector<std::string> rows;
-    for (; detail >= 0; --detail) {
-      rows = aligned(table, kIndent, detail);
-      if (widest(rows) + (bars.values.empty() ? 0 : bars.shortest) <= width_) break;
+    const std::size_t shortest = bars.values.empty() ? 0 : bars.shortest;
+    const auto lines = [&] { return aligned(table, kIndent, columns_of(table, detail)); };
+    while (detail > 0 && widest(lines()) + shortest > width_) --detail;
+    const std::size_t used = widest(lines()), room = used < width_ ? std::min(width_ - used, bars.longest) : 0;
+    for (std::size_t k = 0; k < bars.values.size(); ++k) {
+      table.rows[k][bars.column] = bar(bars.values[k], bars.full, room, unicode_, bars.pale);
     }
-    if (!bars.values.empty()) {
-      const std::size_t used = widest(rows), room = used < width_ ? std::min(width_ - used, bars.longest) : 0;
-      for (std::size_t k = 0; k < bars.values.size(); ++k) {
-        table.rows[k][bars.column] = bar(bars.values[k], bars.full, room, unicode_, bars.pale);
-      }
-      rows = aligned(table, kIndent, std::max(detail, 0));
-    }
-    const bool named = std::any_of(table.columns.begin(), table.columns.end(),
-                                   [](const ReportColumn& column) { return !column.name.empty(); });
-    const auto show = [&](const std::vector<std::string>& lines) {
-      for (std::size_t k = named ? 0 : 1; k < lines.size(); ++k)
-        text_ += (k == 0 ? in(kDim, lines[k]) : lines[k]) + "\n";
-    };
-    if (widest(rows) <= width_ || table.columns.size() < 3) {
-      show(rows);
-    } else {
-      const auto blocks = in_blocks(table, width_);
-      for (std::size_t b = 0; b < blocks.size(); ++b) {
-        if (b > 0) text_ += "\n";
-        show(blocks[b]);
-      }
+    std::vector<Lines> blocks = {lines()};
+    if (widest(blocks[0]) > width_ && table.columns.size() > 2) blocks = in_blocks(table, width_);
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      if (b > 0) text_ += "\n";
+      if (named) text_ += in(kDim, blocks[b][0]) + "\n";
+      for (std::size_t k = 1; k < blocks[b].size(); ++k) text_ += blocks[b][k] + "\n";
     }
     if (!bars.pale_name.empty()) {
       const auto [pale, full] = bar_signs(unicode_);
@@ -257,21 +227,16 @@ std::string wrapped(std::string_view sentence, std::size_t width, std::size_t in
   return result;
 }
 
-std::vector<std::string> aligned(const ReportTable& table, std::size_t indent, int detail) {
-  const std::size_t count = table.rows.size();
-  const auto cell = [&](std::size_t row, std::size_t k) -> std::string_view {  // row 0: the header
-    if (row == 0) return table.columns[k].brief.empty() ? table.columns[k].name : table.columns[k].brief;
-    return k < table.rows[row - 1].size() ? std::string_view(table.rows[row - 1][k]) : std::string_view();
-  };
-  std::vector<std::string> lines(count + 1, std::string(indent, ' '));
-  for (std::size_t k = 0; k < table.columns.size(); ++k) {
-    if (table.columns[k].detail > detail) continue;
-    std::size_t width = 0;
-    for (std::size_t i = 0; i <= count; ++i) width = std::max(width, displayed(cell(i, k)));
-    for (std::size_t i = 0; i <= count; ++i) {
-      const std::string gap(width - displayed(cell(i, k)), ' ');
-      const std::string text(cell(i, k));
-      lines[i] += (k == 0 ? "" : "  ") + (table.columns[k].number ? gap + text : text + gap);
+std::vector<std::string> aligned(const ReportTable& table, std::size_t indent, const ColumnIndices& columns) {
+  Lines lines(table.rows.size() + 1, std::string(indent, ' '));
+  for (const std::size_t k : columns) {
+    const ReportColumn& column = table.columns[k];
+    Lines cells = {column.brief.empty() ? column.name : column.brief};
+    for (const Lines& row : table.rows) cells.push_back(k < row.size() ? row[k] : "");
+    const std::size_t width = widest(cells);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const std::string gap(width - displayed(cells[i]), ' ');
+      lines[i] += (k == columns.front() ? "" : "  ") + (column.number ? gap + cells[i] : cells[i] + gap);
     }
   }
   for (std::string& line : lines) line.erase(line.find_last_not_of(' ') + 1);

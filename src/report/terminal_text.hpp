@@ -18,9 +18,8 @@ std::size_t widest(const std::vector<std::string>& lines);
 /// `sentence` broken at blanks to `width` columns, continuation lines indented by `indent`.
 std::string wrapped(std::string_view sentence, std::size_t width, std::size_t indent);
 
-/// Lines of a table, the header first, with `indent` blanks before each; numbers stand to the right. Columns of more
-/// than `detail` are left out.
-std::vector<std::string> aligned(const ReportTable& table, std::size_t indent, int detail = 0);
+/// Lines of these columns of a table, the header first, with `indent` blanks before each; numbers stand to the right.
+std::vector<std::string> aligned(const ReportTable& table, std::size_t indent, const std::vector<std::size_t>& columns);
 
 /// A bar of `value` on a scale on which `full` fills `columns`; the part up to `pale` is drawn lighter. Block
 /// characters with eighths of a column, or '-' and '#' where only ASCII can be shown.

@@ -1,37 +1,15 @@
-#include <fmt/format.h>
+#include "tribofit/study/twin.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "fit/assessment.hpp"
 #include "json_parts.hpp"
-#include "numbers.hpp"
 #include "report/charts/motion_charts.hpp"
 #include "report_parts.hpp"
-#include "tribofit/report/json.hpp"
-#include "tribofit/report/report.hpp"
 #include "tribofit/report/study.hpp"
-#include "tribofit/study/twin.hpp"
 
 namespace tribofit {
 namespace {
-
-/// "0.84990 +/- 0.00022 kg, 16.1970 +/- 0.0021 N/mm, damping ratio ..., 21.9712 +/- 0.0025 Hz".
-std::string rig_text(const RigFit& rig) {
-  const ShownRig shown = shown_rig(rig);
-  const auto text = [](const ShownRigValue& q) {
-    return with_error(q.value.value / q.si, q.value.std_error / q.si) + unit_behind(q.unit);
-  };
-  return fmt::format("{}, {}, {} {}, {}", text(shown.mass), text(shown.stiffness), shown.damping_ratio.name,
-                     text(shown.damping_ratio), text(shown.natural_frequency));
-}
-
-/// "exponential: mu_s 0.5090 +/- 0.0012, ...".
-std::string law_text(const Fit& fit, const Motion& motion) {
-  std::vector<std::string> parameters;
-  for (const FitParameter& p : fit.parameters) parameters.push_back(full_name(p) + " " + value_text(p, motion));
-  return fmt::format("{}: {}", fit.model.name(), fmt::join(parameters, ", "));
-}
 
 /// Measured and simulated measures, their differences in standard errors, and the root mean square of these.
 ReportTable twin_table(const Twin& twin) {
@@ -45,24 +23,16 @@ ReportTable twin_table(const Twin& twin) {
   table.text({"unit"});
   for (const TwinMeasure& m : twin.measures) {
     const bool portrait = &m == &twin.measures.back();  // a distance: nothing is measured
-    std::vector<std::string> row = {m.name, portrait ? "" : with_error(m.measured / m.si, m.measured_std_error / m.si)};
+    auto& row = table.rows.emplace_back();
+    row = {m.name, portrait ? "" : estimate_text({m.measured, m.measured_std_error}, m.si)};
     for (const TwinMeasure::Simulated& s : m.simulated) {
       row.push_back(portrait ? "" : fixed(s.value / m.si, places_for(s.std_error / m.si)));
       row.push_back(portrait ? fixed(s.difference, 1) : with_sign(s.difference, 1));
     }
     row.push_back(portrait ? "" : m.unit);
-    table.rows.push_back(std::move(row));
   }
   table.rows.push_back(std::move(total));
   return table;
-}
-
-/// How the differences are made.
-std::string twin_note(const Twin& twin) {
-  return fmt::format(
-      "off by: simulated less measured, in standard errors; {} simulations with law and rig drawn within their errors, "
-      "at the mean break-away of the record; the phase portrait is a distance of the loops",
-      twin.simulations);
 }
 
 /// The numbers of each law and of the rig beside it.
@@ -70,8 +40,16 @@ ReportSection twin_model(const TwinIdentification& result) {
   ReportSection section{"model", "Law and rig", {}};
   const std::size_t count = std::min(result.trace.fits.size(), result.rigs.size());
   for (std::size_t c = 0; c < count; ++c) {
-    section.item((c == 0 ? "Law: " : "With effects: ") + law_text(result.trace.fits[c], result.trace.motion));
-    section.item("Rig beside it: " + rig_text(result.rigs[c]));
+    const Fit& fit = result.trace.fits[c];
+    std::vector<std::string> parameters;
+    for (const FitParameter& p : fit.parameters) {
+      parameters.push_back(full_name(p) + " " + value_text(p, result.trace.motion));
+    }
+    section.item(
+        fmt::format("{}: {}: {}", c == 0 ? "Law" : "With effects", fit.model.name(), fmt::join(parameters, ", ")));
+    const auto [mass, damping, stiffness, frequency, ratio, by_stick] = shown_rig(result.rigs[c]);
+    section.item(fmt::format("Rig beside it: {}, {}, {} {}, {}", mass.text(), stiffness.text(), ratio.name,
+                             ratio.text(), frequency.text()));
   }
   return section;
 }
@@ -80,11 +58,10 @@ Suggestion next_after_twin(const TwinIdentification& result, const std::vector<s
   const auto of_verb = [&](std::vector<std::string> verb) {
     return command_line(words_of(std::move(verb), arguments), {result.trace.path});
   };
-  if (!result.twin.reason.empty()) return {"to see the trace, its health and its law", of_verb({})};
-  if (result.twin.agrees() && !result.law_falls_short()) {
-    return {"to see at which speed stick-slip vanishes", of_verb({"study", "speed"})};
-  }
-  return {"to see where the law fails and which effect explains it", of_verb({"diagnose"})};
+  return first_of({{!result.twin.reason.empty(), "to see the trace, its health and its law", of_verb({})},
+                   {result.twin.reason.empty() && result.twin.agrees() && !result.law_falls_short(),
+                    "to see at which speed stick-slip vanishes", of_verb({"study", "speed"})},
+                   {true, "to see where the law fails and which effect explains it", of_verb({"diagnose"})}});
 }
 
 /// Whether the twin moves as the record does, and where it does not.
@@ -99,33 +76,32 @@ std::string twin_verdict(const TwinIdentification& result) {
                        law.substr(std::min(law.size(), law.find('+') + 2)), twin.rms_difference[0],
                        twin.rms_difference[last]);
   }
-  if (twin.agrees()) {
-    text += fmt::format(
-        "The twin of the {} law moves as the record does: nothing is off by more than {:g} standard errors.", law,
-        kTwinIsOff);
-    if (!result.law_falls_short()) return text;
-    const Fit& fit = result.trace.fits.back();
-    return text + fmt::format(
-                      " But these are means over cycles: the held-out error of the law is {:.1f} times the noise "
-                      "floor, so an effect that changes from cycle to cycle may remain.",
-                      over_floor(fit));
+  if (!twin.agrees() && !std::isfinite(twin.rms_difference[last])) {
+    return text + "The twin does not stick and slip as the record does.";
   }
-  if (!std::isfinite(twin.rms_difference[last])) return text + "The twin does not stick and slip as the record does.";
+  if (!twin.agrees()) {
+    return text + fmt::format(
+                      "The twin of the {} law fails in {} (the worst first): the law, the rig or the record is not as "
+                      "assumed.",
+                      law, fmt::join(twin.failures(last), ", "));
+  }
+  text +=
+      fmt::format("The twin of the {} law moves as the record does: nothing is off by more than {:g} standard errors.",
+                  law, kTwinIsOff);
+  if (!result.law_falls_short()) return text;
   return text + fmt::format(
-                    "The twin of the {} law fails in {} (the worst first): the law, the rig or the record "
-                    "is not as assumed.",
-                    law, fmt::join(twin.failures(last), ", "));
+                    " But these are means over cycles: the held-out error of the law is {:.1f} times the noise floor, "
+                    "so an effect that changes from cycle to cycle may remain.",
+                    over_floor(result.trace.fits.back()));
 }
 
-/// Said first: the twin of a law that leaves clearly more than noise does not represent the machine.
-std::vector<std::string> warnings_of(const TwinIdentification& result, const std::vector<std::string>& arguments) {
-  std::vector<std::string> warnings = result.trace.warnings;
-  if (!result.twin.reason.empty() || !result.law_falls_short()) return warnings;
+/// Said first: the twin of a law that leaves clearly more than noise does not represent the machine. Empty where it
+/// does.
+std::string warning_of(const TwinIdentification& result, const std::vector<std::string>& arguments) {
+  if (!result.twin.reason.empty() || !result.law_falls_short()) return "";
   const Fit& fit = result.trace.fits.back();
-  warnings.insert(warnings.begin(),
-                  other_machine_warning("the twin does", fit, over_floor(fit),
-                                        command_line(words_of({"diagnose"}, arguments), {result.trace.path})));
-  return warnings;
+  return other_machine_warning("the twin does", fit, over_floor(fit),
+                               command_line(words_of({"diagnose"}, arguments), {result.trace.path}));
 }
 
 Json twin_json(const TwinIdentification& result, const JsonOptions& options) {
@@ -146,16 +122,6 @@ Json twin_json(const TwinIdentification& result, const JsonOptions& options) {
                 next_after_twin(result, options.arguments).command);
 }
 
-/// The measured motion and those of the twins, under their names.
-std::vector<DrawnMotion> motions_of(const Twin& twin) {
-  std::vector<DrawnMotion> out;
-  if (twin.measured.size() > 0) out.emplace_back("measured", twin.measured);
-  for (std::size_t c = 0; c < twin.simulated.size(); ++c) {
-    if (twin.simulated[c].size() > 0) out.emplace_back("simulated, " + twin.short_name(c), twin.simulated[c]);
-  }
-  return out;
-}
-
 Stroke stroke_for(std::size_t k) {
   constexpr Colour kThree[] = {Colour::black, Colour::red, Colour::blue};
   constexpr Dash kThreeDashes[] = {Dash::solid, Dash::dashed, Dash::dotted};
@@ -164,11 +130,11 @@ Stroke stroke_for(std::size_t k) {
 
 /// Differences in standard errors; within the marks they may be chance.
 Chart differences_chart(const Twin& twin) {
-  Chart chart;
-  chart.id = "twin-differences";
-  chart.title = "Simulated less measured";
-  chart.note = fmt::format("Beyond {:g} standard errors a difference is not chance.", kTwinIsOff);
-  chart.x = {.quantity = "difference", .unit = "standard errors"};
+  Chart chart{.id = "twin-differences",
+              .title = "Simulated less measured",
+              .note = fmt::format("Beyond {:g} standard errors a difference is not chance.", kTwinIsOff),
+              .x = {.quantity = "difference", .unit = "standard errors"},
+              .height = 130 + 26 * static_cast<int>(twin.measures.size())};
   ChartAxis& names = chart.panels[0].axis;
   names.falling = true;
   for (const TwinMeasure& m : twin.measures) names.names.push_back(m.name);
@@ -189,11 +155,18 @@ Chart differences_chart(const Twin& twin) {
     chart.marks.push_back(
         {at, true, at == 0 ? Dash::solid : Dash::dashed, at == 0 ? "" : fmt::format("{:+.0f}", at), 0});
   }
-  chart.height = 130 + 26 * static_cast<int>(twin.measures.size());
   return chart;
 }
 
-Chart motion_chart(const Twin& twin, const std::vector<DrawnMotion>& motions, const std::string& unit) {
+/// The measured motion and those of the twins over time, as portraits, and alive.
+ReportSection motion_section(const Twin& twin, const std::string& unit) {
+  ReportSection section{"motion", "Measured and simulated motion", {}};
+  std::vector<DrawnMotion> motions;
+  if (twin.measured.size() > 0) motions.emplace_back("measured", twin.measured);
+  for (std::size_t c = 0; c < twin.simulated.size(); ++c) {
+    if (twin.simulated[c].size() > 0) motions.emplace_back("simulated, " + twin.short_name(c), twin.simulated[c]);
+  }
+  if (motions.empty()) return section;
   Chart chart{
       .id = "twin-motion",
       .title = "Three cycles, measured and simulated",
@@ -202,39 +175,36 @@ Chart motion_chart(const Twin& twin, const std::vector<DrawnMotion>& motions, co
           "the errors and a scatter of its own. Shaded: stick as measured.",
       .x = {.quantity = "time since break-away", .unit = "s", .digits = 7},
       .height = 640};
-  std::size_t k = 0;
-  const ChartAxis friction{unit == "N" ? "friction" : "mu", unit};
-  for (const DrawnMotion& motion : motions) add_over_time(motion, friction, stroke_for(k++), chart);
+  const double disc = twin.measured.disc_velocity;
+  Chart portrait = portrait_plane("twin-portrait", "Portraits, measured and simulated", disc);
+  Animation alive{.id = "twin-block",
+                  .title = "The block on its disc",
+                  .note = "Three cycles each, from break-away to break-away.",
+                  .disc_velocity = disc / kMillimetre};
+  for (std::size_t k = 0; k < motions.size(); ++k) {
+    add_over_time(motions[k], {unit == "N" ? "friction" : "mu", unit}, stroke_for(k), chart);
+    add_loop(motions[k], stroke_for(k), portrait);
+    alive.blocks.push_back(animated(motions[k]));
+  }
   shade_sticks({"measured", twin.measured}, chart);
-  if (twin.measured.size() > 0) chart.marks.push_back(disc_mark(twin.measured.disc_velocity));
-  return chart;
-}
-
-Chart portrait_chart(const Twin& twin, const std::vector<DrawnMotion>& motions) {
-  Chart chart = portrait_plane("twin-portrait", "Portraits, measured and simulated", twin.measured.disc_velocity);
-  std::size_t k = 0;
-  for (const DrawnMotion& motion : motions) add_loop(motion, stroke_for(k++), chart);
-  return chart;
-}
-
-Animation animation_of(const Twin& twin, const std::vector<DrawnMotion>& motions) {
-  Animation out{.id = "twin-block",
-                .title = "The block on its disc",
-                .note = "Three cycles each, from break-away to break-away.",
-                .disc_velocity = twin.measured.disc_velocity / kMillimetre};
-  for (const DrawnMotion& motion : motions) out.blocks.push_back(animated(motion));
-  return out;
+  if (twin.measured.size() > 0) chart.marks.push_back(disc_mark(disc));
+  for (Chart* one : {&chart, &portrait}) section.add(std::move(*one));
+  section.add(std::move(alive));
+  return section;
 }
 
 }  // namespace
 
 std::string to_json(const TwinIdentification& result, const JsonOptions& options) {
   const Identification& trace = result.trace;
+  std::vector<std::string> warnings = trace.warnings;
+  const std::string first = warning_of(result, options.arguments);
+  if (!first.empty()) warnings.insert(warnings.begin(), first);
   Json json = record_json(trace, options);
   add_members(json, "fits", fits_json(trace.fits, trace.motion), "rig",
               result.rigs.empty() ? Json(nullptr) : rig_json(result.rigs.front()), "rigs",
               list_of(result.rigs, rig_json), "twin", twin_json(result, options), "analysed", trace.analysed,
-              "warnings", warnings_of(result, options.arguments));
+              "warnings", warnings);
   return text_of(json);
 }
 
@@ -245,10 +215,12 @@ Report report_of(const TwinIdentification& result, const ReportOptions& options)
                                 "The measured motion beside those that law and rig predict,", twin_verdict(result));
   report.warnings = trace.warnings;
   ReportSection end = result_section(report), first{"first", "", {}, Medium::terminal};
-  report.warnings = warnings_of(result, options.arguments);
-  if (report.warnings.size() > trace.warnings.size()) first.warning(report.warnings.front());
+  if (const std::string warning = warning_of(result, options.arguments); !warning.empty()) {
+    report.warnings.insert(report.warnings.begin(), warning);
+    first.warning(warning);
+  }
   report.next = {next_after_twin(result, options.arguments)};
-  report.facts = facts_of(trace);
+  add_facts(trace, report);
   report.facts.emplace_back("simulations of each law", std::to_string(twin.simulations));
   for (std::size_t c = 0; c < twin.columns.size(); ++c) {
     const double rms = twin.rms_difference[c];
@@ -257,22 +229,18 @@ Report report_of(const TwinIdentification& result, const ReportOptions& options)
   }
   report.add({std::move(first), record_section(trace)});
   if (twin.reason.empty() && !twin.columns.empty()) {
-    ReportSection motion{"motion", "Measured and simulated motion", {}};
     ReportSection measures{"measures", "Measures in standard errors", {}};
-    if (const auto motions = motions_of(twin); !motions.empty()) {
-      motion.add(motion_chart(twin, motions, friction_unit(trace.motion)));
-      motion.add(portrait_chart(twin, motions));
-      motion.add(animation_of(twin, motions));
-    }
     measures.add(differences_chart(twin));
     measures.add(twin_table(twin));
-    measures.soft(twin_note(twin));
-    report.add({std::move(motion), std::move(measures), twin_model(result)});
+    measures.soft(fmt::format(
+        "off by: simulated less measured, in standard errors; {} simulations with law and rig drawn within their "
+        "errors, at the mean break-away of the record; the phase portrait is a distance of the loops",
+        twin.simulations));
+    report.add({motion_section(twin, friction_unit(trace.motion)), std::move(measures), twin_model(result)});
   }
-  const std::string path = options.inputs.empty() ? trace.path : options.inputs.front();
   report.add({{"health", "Health of the data", {health_table({&trace, 1})}, Medium::page},
               std::move(end),
-              run_section(report, command_line(words_of({"twin"}, options.arguments), {path}), {&trace, 1})});
+              run_section(report, "twin", options, trace)});
   return report;
 }
 

@@ -37,7 +37,7 @@ TEST(Numbers, TablesLineUpWhateverTheAlphabet) {
   ReportTable table;
   table.text({"name"}).numbers({"value"});
   table.rows = {{"α", "1"}, {"beta", "10.5"}};
-  EXPECT_EQ(aligned(table, 2), (std::vector<std::string>{"  name  value", "  α         1", "  beta   10.5"}));
+  EXPECT_EQ(aligned(table, 2, {0, 1}), (std::vector<std::string>{"  name  value", "  α         1", "  beta   10.5"}));
 }
 
 TEST(Numbers, SentencesBreakAtBlanks) {

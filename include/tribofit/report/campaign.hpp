@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "tribofit/campaign/batch.hpp"
+#include "tribofit/campaign/pooled.hpp"
 #include "tribofit/campaign/run_result.hpp"
 #include "tribofit/report/json.hpp"
-#include "tribofit/report/pooled.hpp"
 #include "tribofit/report/report.hpp"
 
 namespace tribofit {
@@ -33,6 +33,35 @@ struct CampaignSummary {
 /// `comparison`, the object of comparison_json(), is added under that key where it is given.
 /// Throws WriteError. Cost: linear in runs; memory hardly grows with them.
 CampaignSummary write_summary(const ResultReader& results, const std::string& comparison = {});
+
+/// Writes into the folder of the results, each file whole or not at all:
+/// - pooled.csv: a row for every group of repeats, law, protocol and parameter, and for every measure (law empty)
+/// - shared.csv, where parameters are shared: a row for every common value, then one for every run and parameter
+/// - trends.csv: a row for every law, parameter and condition
+/// - pooled.json: {"tool", "groups", "shared", "trends", "confounded", "warnings"}
+/// Units stand in a column "unit", those of conditions in the names of their columns. Throws WriteError.
+void write_pooled(const std::string& folder, std::span<const RunResult> runs, const Pooled& pooled);
+
+/// comparison.csv: a row for each pair of an earlier value and one of ours, with their conditions and units.
+std::string comparison_csv(const ComparisonReport& report, std::span<const PooledGroup> groups);
+
+/// The same as the JSON object {"path", "values", "unmatched", "relative_error", "law_preference"}, for summary.json.
+std::string comparison_json(const ComparisonReport& report, std::span<const PooledGroup> groups);
+
+/// Writes what Fig 5 to 12 of [D] show, from the runs of a campaign, into figures/ in the folder of its results:
+///
+/// 05-rms-velocity.csv     RMS of the velocity of the block: mean over repeats and its standard error
+/// 06-08-three-cycles.csv  v_r and friction over time
+/// 07-spectrum.csv         amplitude spectrum of v_r
+/// 07-harmonics.csv        amplitude of the fundamental of v_r and of its multiples
+/// 09-static-kinetic.csv   mu_s, mu_k and their difference: mean over repeats, standard error, each law and protocol
+/// 10-12-over-velocity.csv measured and fitted friction and relative error (Eq 5) in bins of v_r, each law and protocol
+/// 12-relative-error.csv   the same over all slip samples, with the share below 0.08
+///
+/// A row begins with the run (or the number of runs) and its conditions; units stand in the names of the columns.
+/// Each file appears whole or not at all. `runs` are those of `results`, `groups` their repeats. Throws WriteError.
+/// Cost: linear in runs; memory does not grow with them.
+void write_figures(const ResultReader& results, std::span<const RunResult> runs, std::span<const PooledGroup> groups);
 
 /// A campaign: what Fig 5 to 12 of [D] show, earlier values beside ours (`comparison`), which law predicts better, all
 /// pooled values with what differs from run to run, trends, the runs with their status and warnings. Of many conditions

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "report/campaign_tables.hpp"
+#include "report/campaign_report.hpp"
 #include "tribofit/report/terminal.hpp"
 
 namespace {
@@ -53,23 +53,21 @@ TEST(CampaignTables, RepeatsNameTheParametersOfEachLaw) {
       v.lower95 = v.value - 12.706 * v.std_error, v.upper95 = v.value + 12.706 * v.std_error;
     }
   }
-  const ReportTable table = repeats_table(std::vector{group});
+  const ReportTable table = repeats_table(std::vector{group}, true);
   ASSERT_EQ(table.rows.size(), 6u);
-  EXPECT_EQ(cell_of(table, table.rows[1], "parameter"), "A");
-  EXPECT_EQ(cell_of(table, table.rows[1], "value"), "-0.02130");
+  EXPECT_EQ(cell_of(table, table.rows[1], "value"), "A");
+  EXPECT_EQ(cell_of(table, table.rows[1], "law"), "");  // said in the row above
+  EXPECT_EQ(cell_of(table, table.rows[1], "mean"), "-0.02130 +/- 0.00040");
   EXPECT_EQ(cell_of(table, table.rows[1], "95 % interval"), "[-0.02638, -0.01622]");
-  EXPECT_EQ(cell_of(table, table.rows[1], "degrees of freedom"), "1");
-  EXPECT_EQ(cell_of(table, table.rows[2], "parameter"), "an effect.tau");
+  EXPECT_EQ(cell_of(table, table.rows[1], "runs"), "2");
+  EXPECT_EQ(cell_of(table, table.rows[2], "value"), "an effect.tau");
   EXPECT_EQ(cell_of(table, table.rows[3], "law"), "gaussian");
-  EXPECT_EQ(cell_of(table, table.rows[3], "best in"), "2");
   EXPECT_EQ(cell_of(table, table.rows[5], "unit"), "mm/s");
   TerminalOptions narrow;
   narrow.width = 80;
   Report report;
-  report.add({pooled_section({{group}, {}, {}})});
-  const std::string text = render_terminal(report, narrow);
-  EXPECT_THAT(text, HasSubstr("[-0.02638, -0.01622]"));
-  EXPECT_THAT(text, HasSubstr("dof"));
+  report.add({{"repeats", "", {table}}});
+  EXPECT_THAT(render_terminal(report, narrow), HasSubstr("[-0.02638, -0.01622]"));
 }
 
 TEST(CampaignTables, RunsNameTheParametersOfTheirBestLaw) {
@@ -88,7 +86,6 @@ TEST(CampaignTables, RunsNameTheParametersOfTheirBestLaw) {
               ElementsAre("0.5090 +/- 0.0010", "0.3180 +/- 0.0020", "v_s 17.20 +/- 0.30 mm/s"));
   run.run.status = RunStatus::unreadable;
   EXPECT_THAT(law_cells(table, run_row(run)), ElementsAre("", "", ""));
-  EXPECT_THAT(law_cells(table, run_row(PlannedRun{"a", "a.csv", ""})), ElementsAre("", "", ""));
 }
 
 }  // namespace
