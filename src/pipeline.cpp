@@ -13,7 +13,7 @@
 #include "diagnosis/diagnose_traces.hpp"
 #include "fit/fit_laws.hpp"
 #include "fit/requested_effects.hpp"
-#include "ingest/declared_conditions.hpp"
+#include "ingest/stated_conditions.hpp"
 #include "segmentation/counts.hpp"
 #include "tribofit/execution/parallel.hpp"
 #include "tribofit/execution/stop.hpp"

@@ -2,6 +2,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -69,6 +70,7 @@ ExitStatus run(int argc, char** argv) {
 
 ExitStatus run_and_report(int argc, char** argv) {
   try {
+    tribofit::name_settings([](std::string_view key) { return "--" + std::string(key); });
     return run(argc, argv);
   } catch (const tribofit::InputError& error) {
     print_error(error.what());

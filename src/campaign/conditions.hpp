@@ -6,16 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "ingest/manifest_roles.hpp"
+#include "ingest/stated_conditions.hpp"
 #include "tribofit/campaign/run_result.hpp"
 
 namespace tribofit {
-
-/// The condition that a column of a manifest states; null for its other columns.
-inline const ConditionInfo* condition_of(Role role) {
-  if (role != Role::radius && role != Role::speed && role != Role::load) return nullptr;
-  return std::ranges::find(condition_infos, quantity_of(role), &ConditionInfo::quantity);
-}
 
 /// The value of a further condition; empty where it is not stated.
 inline std::string value_of(const std::vector<OtherCondition>& others, const std::string& name) {

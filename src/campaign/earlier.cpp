@@ -32,10 +32,10 @@ struct Known {
 struct EarlierColumn {
   enum class Kind { condition, other, law, protocol, value, std_error, none };
   Kind kind = Kind::none;
-  std::string title;          ///< as the file gives it
-  std::string name;           ///< of the quantity or the condition
-  std::string unit;           ///< of conditions; empty: in the cells
-  Role role = Role::other;    ///< of conditions
+  std::string title;  ///< as the file gives it
+  std::string name;   ///< of the quantity or the condition
+  std::string unit;   ///< of conditions; empty: in the cells
+  const ConditionInfo* condition = nullptr;
   std::string law, protocol;  ///< said by the name of the column
   double factor = 1;          ///< of values, from the unit of the column to ours
 };
@@ -80,12 +80,10 @@ class EarlierReader {
     text_ = read_text_table(table_.path,
                             {1 << 26, "is too large for a table of values", "one row for each condition is meant",
                              "begin it with the names of the columns, as in radius_mm,mu_s,mu_k,alpha_s_per_mm"});
-    for (const RawColumn& column : text_.table.columns) {
-      if (column.named) columns_.push_back(column_of(column.name));
-    }
+    for (const std::string& name : text_.names) columns_.push_back(column_of(name));
     find_long();
     check_columns();
-    for (std::size_t row = 0; row < text_.rows(); ++row) read_row(row);
+    for (std::size_t row = 0; row < text_.rows.size(); ++row) read_row(row);
     if (table_.values.empty()) refuse("holds no values", "fill in a row for each of the conditions");
     return std::move(table_);
   }
@@ -155,7 +153,7 @@ class EarlierReader {
       const auto unit = unit_in(behind);
       if (!unit) continue;
       found.name = known->name;
-      found.factor = factor_to(*known, *unit, text_.header_line(), column.title);
+      found.factor = factor_to(*known, *unit, text_.header_line, column.title);
       column = found;
       return;
     }
@@ -163,17 +161,17 @@ class EarlierReader {
 
   void take_as_condition(EarlierColumn& column) const {
     const ColumnName name = parse_column_name(column.title);
-    column.role = role_of(name);
+    column.condition = find_condition(name.base);
     column.name = column.title;
-    if (const ConditionInfo* condition = condition_of(column.role)) {
+    if (column.condition != nullptr) {
       column.kind = Kind::condition;
-      column.name = condition->name;
+      column.name = column.condition->name;
     } else if (others_.contains(column.title)) {
       column.kind = Kind::other;
     } else if (column.title == "law" || column.title == "protocol") {
       column.kind = column.title == "law" ? Kind::law : Kind::protocol;
     }
-    column.unit = name.unit.value_or(column.role == Role::speed && names_rpm(name.base) ? "rpm" : "");
+    column.unit = name.unit.value_or(names_rpm(name.base) ? "rpm" : "");
   }
 
   EarlierColumn column_of(const std::string& title) const {
@@ -202,7 +200,7 @@ class EarlierReader {
   }
 
   void check_columns() {
-    const std::size_t line = text_.header_line();
+    const std::size_t line = text_.header_line;
     bool conditions = false, values = is_long();
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       const EarlierColumn& column = columns_[k];
@@ -234,7 +232,7 @@ class EarlierReader {
   void read_row(std::size_t at) {
     const std::vector<std::string> cells = text_.cells_of(at);
     EarlierValue row;
-    row.line = text_.line_of(at);
+    row.line = text_.rows[at].line;
     const bool states_conditions = read_conditions(cells, row);
     const std::size_t before = table_.values.size();
     if (is_long()) {
@@ -259,8 +257,8 @@ class EarlierReader {
       if (column.kind == Kind::protocol) row.protocol = text;
       if (column.kind != Kind::condition) continue;
       try {
-        row.conditions.*condition_of(column.role)->member = {
-            condition_in_cell(text_.with_decimal_point(text), column.role, column.title, column.unit), "table"};
+        row.conditions.*column.condition->member = {
+            condition_in_cell(text_.with_decimal_point(text), *column.condition, column.title, column.unit), "table"};
       } catch (const InputError& error) {
         refuse(error.problem(), error.advice(), row.line, column.title);
       }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "conditions.hpp"
+#include "ingest/column_names.hpp"
 #include "ingest/reader.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -73,7 +74,7 @@ Condition condition_from(const std::string& text, const ConditionInfo& what, con
 /// "Radius [mm]: 15" as a radius of 15mm.
 void take_fact(const RawFact& fact, StatedFields& stated) {
   const ColumnName name = parse_column_name(fact.name);
-  const ConditionInfo* what = condition_of(role_of(name));
+  const ConditionInfo* what = find_condition(name.base);
   std::string value = replaced(fact.value, ",", ".");
   if (what == nullptr || value.find_first_of("0123456789") == std::string::npos) return;
   if (value.find_first_not_of("+-.0123456789eE") == std::string::npos && name.unit) value += *name.unit;

@@ -1,5 +1,3 @@
-#include "assemble.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +6,7 @@
 #include <utility>
 
 #include "limits.hpp"
-#include "points.hpp"
+#include "recording.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -26,11 +24,13 @@ void refuse_stress_beside_force(const FileRecord& run) {
   if (load && stress != run.is_stress(Channel::load)) {
     throw InputError(
         stress ? "friction is a shear stress and the load a force" : "friction is a force and the load a normal stress",
-        "give both as stresses or both as forces; --units states them (force=MPa,load=MPa)", {run.path, 0, ""});
+        "give both as stresses or both as forces; " + setting("units") + " states them (force=MPa,load=MPa)",
+        run.file());
   }
   if (!stress || load) return;
   throw InputError("the shear stress needs the normal stress, which is not known",
-                   "name its column with --columns load=NAME:MPa, or name the column of mu", {run.path, 0, ""});
+                   "name its column with " + setting("columns", "load=NAME:MPa") + ", or name the column of mu",
+                   run.file());
 }
 
 class Assembler {
@@ -54,8 +54,6 @@ class Assembler {
   }
 
  private:
-  InputLocation file() const { return {run_.path, 0, ""}; }
-
   void set_kind() {
     const bool spring_alone = run_.has(Channel::spring) && !run_.has(Channel::mu) && !run_.has(Channel::force);
     if (!run_.kind && spring_alone) {
@@ -70,9 +68,13 @@ class Assembler {
     }
   }
 
+  static bool all_know(const std::vector<Step>& steps, Condition Conditions::*condition) {
+    return std::ranges::all_of(steps, [&](const Step& step) { return (step.conditions.*condition).known(); });
+  }
+
   /// The motion alone, or friction alone, where nothing else of the file could be the other.
   void settle_kind_without_friction() {
-    const bool stiffness_alone = run_.kind == RecordKind::spring_slider;  // which --stiffness says of both
+    const bool stiffness_alone = run_.kind == RecordKind::spring_slider;  // which a stiffness says of both
     if (run_.has(Channel::x_b) && !run_.has_friction() && (!run_.kind || stiffness_alone)) {
       run_.kind = RecordKind::motion_only;
       run_.kind_source = "no friction was recorded";
@@ -97,9 +99,7 @@ class Assembler {
       if (!radii.empty()) conditions.radius = {radii[run_.recipe_steps[i]], "command line"};
       if (conditions.radius.known()) refuse_radius(conditions.radius.value);
     }
-    for (const auto condition : {&Conditions::radius, &Conditions::speed, &Conditions::load}) {
-      trace_.conditions.*condition = common(condition);
-    }
+    for (const ConditionInfo& info : condition_infos) trace_.conditions.*info.member = common(info.member);
     if (radii.empty() && run_.recipe_size() > 1 && options_.conditions.radius.known()) {
       trace_.notes.push_back(fmt::format("the radius of {} mm was taken for all {} steps",
                                          general(1e3 * trace_.conditions.radius.value), run_.recipe_size()));
@@ -112,19 +112,13 @@ class Assembler {
     for (const Step& step : trace_.steps) labels.push_back(step.label);
     throw InputError(fmt::format("the file has {} step{} ({}) but {} radii were given", run_.recipe_size(),
                                  run_.recipe_size() == 1 ? "" : "s", listed(labels), radii),
-                     "give one radius for each step, in their order", file());
+                     "give one radius for each step, in their order", run_.file());
   }
 
   void refuse_radius(double radius) const {
     if (radius > kSmallestRadius && std::isfinite(radius)) return;
     throw InputError(fmt::format("a friction radius of {} mm is not possible", general(1e3 * radius)),
-                     "give a radius above zero", file());
-  }
-
-  static Conditions first_known(const Conditions& by_user, const Conditions& by_file) {
-    const auto first = [](const Condition& a, const Condition& b) { return a.known() ? a : b; };
-    return {first(by_user.radius, by_file.radius), first(by_user.speed, by_file.speed),
-            first(by_user.load, by_file.load)};
+                     "give a radius above zero", run_.file());
   }
 
   /// The condition that all steps share; not known where they differ.
@@ -137,23 +131,24 @@ class Assembler {
 
   double radius_of(const Step& step, const char* why) const {
     if (step.conditions.radius.known()) return step.conditions.radius.value;
-    throw InputError(std::string(why) + " needs the friction radius, which is not known",
-                     run_.recipe_size() > 1
-                         ? fmt::format("give it with --radius 15mm, or one for each of the {} steps where it changes",
-                                       run_.recipe_size())
-                         : "give it with --radius 15mm",
-                     file());
+    std::string advice = "give it with " + setting("radius", "15mm");
+    if (run_.recipe_size() > 1)
+      advice += fmt::format(", or one for each of the {} steps where it changes", run_.recipe_size());
+    throw InputError(std::string(why) + " needs the friction radius, which is not known", advice, run_.file());
   }
+
+  bool is_angular(Channel velocity) const { return run_.columns.has(velocity, Quantity::angular_velocity); }
 
   /// A joint has no radius: torque and rotational speed are those at a lever of 1 m. Over a load that would be no mu.
   void set_lever() {
     const bool unknown = std::none_of(trace_.steps.begin(), trace_.steps.end(),
                                       [](const Step& step) { return step.conditions.radius.known(); });
     const bool torque = run_.has(Channel::torque) && !run_.has(Channel::mu) && !run_.has(Channel::force);
-    const Column* column = run_.columns.find(run_.has(Channel::v_b) ? Channel::v_b : Channel::v_r);
+    const Channel velocity = run_.has(Channel::v_b) ? Channel::v_b : Channel::v_r;
     const bool steady = run_.is_points() || run_.kind == RecordKind::sliding;
-    const bool turns = column != nullptr ? column->angular && (steady || column->channel == Channel::v_r)
-                                         : steady && run_.has(Channel::speed);
+    const bool turns = run_.columns.find(velocity) != nullptr
+                           ? is_angular(velocity) && (steady || velocity == Channel::v_r)
+                           : steady && run_.has(Channel::speed);
     const bool loaded = run_.has(Channel::load) || trace_.conditions.load.known();
     if (!unknown || !torque || !turns || (loaded && !steady)) return;
     trace_.conditions.radius = {1, "lever of 1 m"};
@@ -194,7 +189,7 @@ class Assembler {
     for (std::size_t i = 0; i < trace_.friction_std_error.size(); ++i) {
       if (trace_.friction_std_error[i] > 0) continue;
       throw InputError("a standard error must be above zero",
-                       "correct it, or leave the column out with --columns std_error=none",
+                       "correct it, or leave the column out with " + setting("columns", "std_error=none"),
                        run_.location(i, Channel::std_error));
     }
   }
@@ -211,10 +206,8 @@ class Assembler {
       trace_.friction.clear();
       return;
     }
-    const bool spring = run_.has(Channel::spring) && run_.kind == RecordKind::spring_slider;
-    if (spring) {
-      const Column* column = run_.columns.find(Channel::spring);
-      if (column == nullptr || !column->over_load) divide_by_load("pull of the spring");
+    if (run_.has(Channel::spring) && run_.kind == RecordKind::spring_slider) {
+      if (!run_.columns.has(Channel::spring, Quantity::dimensionless)) divide_by_load("pull of the spring");
       return;
     }
     if (run_.has(Channel::mu)) return;
@@ -235,17 +228,17 @@ class Assembler {
       divide_by_measured_load(force);
       return;
     }
-    const bool stated = std::all_of(trace_.steps.begin(), trace_.steps.end(),
-                                    [](const Step& step) { return step.conditions.load.known(); });
-    if (!stated) {
+    if (!all_know(trace_.steps, &Conditions::load)) {
       trace_.friction_kind = FrictionKind::force;
       trace_.notes.push_back("no normal force is known: friction is a force in N, " + force +
-                             (force == "torque/radius" ? "" : " as measured") + " (state --load for a coefficient)");
+                             (force == "torque/radius" ? "" : " as measured") + " (state " + setting("load") +
+                             " for a coefficient)");
       return;
     }
     for (const Step& step : trace_.steps) {
       const double nominal = step.conditions.load.value;
-      if (!(nominal > 0)) throw InputError("the load must be above zero", "give it as --load 50N", file());
+      if (!(nominal > 0))
+        throw InputError("the load must be above zero", "give it as " + setting("load", "50N"), run_.file());
       for (std::size_t i = step.begin; i < step.end; ++i) divide_friction(i, nominal);
     }
     const Condition& load = trace_.conditions.load;
@@ -257,10 +250,10 @@ class Assembler {
     const auto& load = run_[Channel::load];
     for (std::size_t i = 0; i < load.size(); ++i) {
       if (!(load[i] > kSmallestLoad)) {
-        throw InputError(
-            fmt::format("the load is {} N, and friction is {} over load", general(load[i]), force),
-            "remove the rows without load, or leave the channel out with --columns load=none and state --load",
-            run_.location(i, Channel::load));
+        throw InputError(fmt::format("the load is {} N, and friction is {} over load", general(load[i]), force),
+                         "remove the rows without load, or leave the channel out with " +
+                             setting("columns", "load=none") + " and state " + setting("load"),
+                         run_.location(i, Channel::load));
       }
       divide_friction(i, load[i]);
     }
@@ -307,15 +300,14 @@ class Assembler {
     if (!block && !relative) return set_fixed_block();
     trace_.velocity_kind = block && !run_.is_points() ? VelocityKind::block : VelocityKind::relative;
     const Channel channel = block ? Channel::v_b : Channel::v_r;
-    const Column* column = run_.columns.find(channel);
-    if (column == nullptr || !column->angular) return;
+    if (!is_angular(channel)) return;
     if (!block && !run_.is_points() && !options_.conditions.speed.known()) turning_ = trace_.velocity;
     for (const Step& step : trace_.steps) {
       const double radius = radius_of(step, "a velocity given as a rotational speed");
       for (std::size_t i = step.begin; i < step.end; ++i) trace_.velocity[i] *= radius;
     }
-    trace_.notes.push_back(
-        fmt::format("{} is the rotational speed in column {} times the radius", to_string(channel), column->name));
+    trace_.notes.push_back(fmt::format("{} is the rotational speed in column {} times the radius", to_string(channel),
+                                       run_.columns.find(channel)->name));
   }
 
   using Values = std::vector<double> Trace::*;
@@ -392,6 +384,14 @@ class Assembler {
 };
 
 }  // namespace
+
+Conditions first_known(const Conditions& first, const Conditions& second) {
+  Conditions known = first;
+  for (const auto& info : condition_infos) {
+    if (!(first.*info.member).known()) known.*info.member = second.*info.member;
+  }
+  return known;
+}
 
 Trace assemble(FileRecord run, const ReadOptions& options) {
   return Assembler(std::move(run), options).assemble();

@@ -1,5 +1,3 @@
-#include "clock.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "column_names.hpp"
 #include "limits.hpp"
+#include "recording.hpp"
 #include "tribofit/execution/parallel.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -130,10 +128,7 @@ class Clock {
     const auto& stated = recording_.stated_steps;
     if (!stated.empty()) {
       step.label = stated[stated_].label;
-      for (const auto condition : {&Conditions::radius, &Conditions::speed, &Conditions::load}) {
-        const Condition& own = stated[stated_].conditions.*condition;
-        if (own.known()) step.conditions.*condition = own;
-      }
+      step.conditions = first_known(stated[stated_].conditions, step.conditions);
     } else if (!in_recipe) {
       step.label = recording_.steps.back().label;
     } else if (!step_.empty()) {
@@ -144,19 +139,23 @@ class Clock {
     recording_.steps.push_back(step);
   }
 
+  static std::string too_coarse() {
+    return "where the clock is written too coarsely, give the sampling rate with " + setting("rate");
+  }
+
   [[noreturn]] void refuse(std::size_t row, double last) const {
     const bool repeats = time_[row] == last;
     throw InputError(
         fmt::format("time {} ({} s after {} s)", repeats ? "repeats" : "goes backwards", general(time_[row], 9),
                     general(last, 9)),
-        repeats ? "remove the row; where the clock is written too coarsely, give the sampling rate with --rate"
+        repeats ? "remove the row; " + too_coarse()
                 : "sort or split the file; steps whose clock restarts need their own start time or a step column",
         recording_.location(row, Channel::time));
   }
 
   [[noreturn]] void refuse_rounding(std::size_t row) const {
     throw InputError("the interval is lost beside the time that has passed",
-                     "give the sampling rate with --rate, or start the clock at 0",
+                     "give the sampling rate with " + setting("rate") + ", or start the clock at 0",
                      recording_.location(row, Channel::time));
   }
 
@@ -164,8 +163,7 @@ class Clock {
     if (gaps_.size() <= kMostGaps || gaps_.size() * kRowsPerGap <= time_.size()) return;
     throw InputError(fmt::format("the clock is irregular: {} intervals are longer than {} times the median of {} s",
                                  gaps_.size(), general(kGapInterval), general(interval_, 6)),
-                     "resample the trace; where the clock is written too coarsely, give the sampling rate with --rate",
-                     recording_.location(gaps_.front(), Channel::time));
+                     "resample the trace; " + too_coarse(), recording_.location(gaps_.front(), Channel::time));
   }
 
   void warn_of_gaps() {
@@ -180,16 +178,9 @@ class Clock {
 
   void note_restarts() {
     if (restarts_.empty()) return;
-    const bool has_lines = recording_.location(0, Channel::time).line > 0;
-    std::vector<std::string> places;
-    for (const std::size_t row : restarts_) {
-      places.push_back(std::to_string(has_lines ? recording_.lines.line_of(row) : row + 1));
-    }
-    if (places.size() > 8) places = {places.front(), "...", places.back()};
-    const char* plural = restarts_.size() == 1 ? "" : "s";
     recording_.notes.push_back(
-        fmt::format("the clock restarts {} time{} ({}{} {}); the steps follow one another without a pause",
-                    restarts_.size(), plural, has_lines ? "line" : "value", plural, listed(places)));
+        fmt::format("the clock restarts {} time{} ({}); the steps follow one another without a pause", restarts_.size(),
+                    restarts_.size() == 1 ? "" : "s", recording_.places_of(restarts_)));
   }
 
   FileRecord& recording_;
@@ -202,32 +193,31 @@ class Clock {
   std::vector<std::size_t> gaps_, restarts_;
 };
 
-std::size_t rows_of(const FileRecord& recording) {
-  std::size_t rows = 0;
-  for (const Channel channel : recording.present()) rows = std::max(rows, recording[channel].size());
-  return rows;
-}
-
 /// A fact that states the sampling, as a rate or as an interval.
 std::optional<Sampling> sampling_from(const RawFact& fact) {
   const std::string base = parse_column_name(fact.name).base;
   Sampling sampling;
-  if (is_one_of(base, {"fs", "rate", "samplerate", "samplingrate", "samplefrequency", "samplingfrequency", "abtastrate",
-                       "abtastfrequenz", "\u91c7\u6837\u9891\u7387", "\u91c7\u6837\u7387"})) {
+  if (is_among(base,
+               "fs rate samplerate samplingrate samplefrequency samplingfrequency abtastrate abtastfrequenz "
+               "\u91c7\u6837\u9891\u7387 \u91c7\u6837\u7387")) {
     sampling.rate = value_of(fact, Quantity::frequency, "Hz").value_or(0);
-  } else if (is_one_of(base, {"dt", "interval", "sampleinterval", "samplinginterval", "samplingtimeinterval",
-                              "sampleperiod", "samplingperiod", "timestep", "timeinterval", "deltat", "deltax",
-                              "abtastintervall", "\u91c7\u6837\u95f4\u9694"})) {
+  } else if (is_among(base,
+                      "dt interval sampleinterval samplinginterval samplingtimeinterval sampleperiod samplingperiod "
+                      "timestep timeinterval deltat deltax abtastintervall \u91c7\u6837\u95f4\u9694")) {
     sampling.interval = value_of(fact, Quantity::time, "s").value_or(0);
   }
-  const double size = sampling.rate + sampling.interval;
-  if (!(size > 0) || !std::isfinite(size)) return std::nullopt;
+  if (!sampling.is_possible()) return std::nullopt;
   const std::string place = fact.line > 0 ? fmt::format(" in line {}", fact.line) : "";
   sampling.source = fmt::format("'{}: {}'{} of the file", fact.name, fact.value, place);
   return sampling;
 }
 
 }  // namespace
+
+bool Sampling::is_possible() const {
+  const double size = rate + interval;
+  return size > 0 && std::isfinite(size) && std::isfinite(start);
+}
 
 std::optional<Sampling> stated_sampling(const RawTable& table, std::size_t rows, std::optional<double> rate) {
   if (rate) return Sampling{0, *rate, 0, true, fmt::format("the sampling rate of {} Hz", general(*rate))};
@@ -242,13 +232,12 @@ std::optional<Sampling> stated_sampling(const RawTable& table, std::size_t rows,
 }
 
 void set_time(FileRecord& recording, const Sampling& sampling) {
-  const double size = sampling.rate + sampling.interval;
-  if (!(size > 0) || !std::isfinite(size) || !std::isfinite(sampling.start)) {
+  if (!sampling.is_possible()) {
     throw InputError(sampling.by_user ? "the sampling rate must be positive" : "the stated sampling is not possible",
-                     "give the sampling rate as --rate 20kHz", {recording.path, 0, ""});
+                     "give the sampling rate as " + setting("rate", "20kHz"), recording.file());
   }
   auto& time = recording[Channel::time];
-  time.resize(rows_of(recording));
+  time.resize(recording.rows());
   for (std::size_t i = 0; i < time.size(); ++i) {
     const double row = static_cast<double>(i);
     time[i] = sampling.start + (sampling.rate > 0 ? row / sampling.rate : row * sampling.interval);
@@ -266,7 +255,7 @@ void set_clock(FileRecord& recording, const std::optional<Sampling>& sampling, i
   }
   Clock(recording, threads).run();
   if (!(recording.size() > 1)) {
-    throw InputError("has one row only", "a trace needs at least two samples", {recording.path, 0, ""});
+    throw InputError("has one row only", "a trace needs at least two samples", recording.file());
   }
 }
 
@@ -283,18 +272,11 @@ double typical_interval(const std::vector<double>& time) {
 double Trace::interval() const {
   if (time.size() < 2) return 0;
   const double longest = kGapInterval * typical_interval(time);
+  std::size_t count = 0;  // of gaps: most records have none, which is seen faster than added up
+  for (std::size_t i = 1; i < time.size(); ++i) count += time[i] - time[i - 1] > longest ? 1U : 0U;
   double gaps = 0;
-  std::size_t count = 0;
-  constexpr std::size_t kBlock = 4096;  // most have none, which is seen faster than added up
-  for (std::size_t begin = 1; begin < time.size(); begin += kBlock) {
-    const std::size_t end = std::min(time.size(), begin + kBlock);
-    std::size_t longer = 0;
-    for (std::size_t i = begin; i < end; ++i) longer += time[i] - time[i - 1] > longest ? 1U : 0U;
-    if (longer == 0) continue;
-    count += longer;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (const double d = time[i] - time[i - 1]; d > longest) gaps += d;
-    }
+  for (std::size_t i = 1; count > 0 && i < time.size(); ++i) {
+    if (const double d = time[i] - time[i - 1]; d > longest) gaps += d;
   }
   if (count + 1 >= time.size()) return duration() / static_cast<double>(time.size() - 1);
   return (duration() - gaps) / static_cast<double>(time.size() - 1 - count);

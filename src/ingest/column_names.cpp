@@ -7,20 +7,11 @@
 #include <charconv>
 #include <vector>
 
+#include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 namespace {
-
-/// Which of the names divided by blanks this one is; no_rank: none.
-std::size_t place_of(std::string_view name, std::string_view names) {
-  for (std::size_t place = 0; !names.empty(); ++place) {
-    const std::size_t end = std::min(names.find(' '), names.size());
-    if (names.substr(0, end) == name) return place;
-    names.remove_prefix(std::min(end + 1, names.size()));
-  }
-  return no_rank;
-}
 
 /// Names that need a unit to be believed: a velocity is as often the carriage's, a position a height.
 bool needs_unit(std::string_view base, Channel channel) {
@@ -66,23 +57,25 @@ std::optional<double> value_in(std::string_view number, std::string_view unit, C
 
 }  // namespace
 
-std::string lists_columns(const std::string& path) {
-  return fmt::format("'identify columns {}' lists what it holds", path);
-}
-
-const Column* Columns::find(Channel channel) const {
-  const auto at = std::find_if(used.begin(), used.end(), [&](const Column& c) { return c.channel == channel; });
-  return at != used.end() ? &*at : nullptr;
-}
-
 std::vector<std::string> channel_names() {
   std::vector<std::string> names;
   for (const ChannelInfo& channel : channel_infos) names.emplace_back(channel.key);
   return names;
 }
 
+Label label_of(const RawColumn& column) {
+  ColumnName name = parse_column_name(column.name);
+  Label label{std::move(name.base), std::move(name.unit).value_or(""), std::nullopt};
+  if (label.unit.empty() && column.unit != ".") label.unit = column.unit;  // xlook's sign for none
+  if (label.unit.empty()) return label;
+  auto unit = find_unit(label.unit, Quantity::angular_velocity);
+  if (!unit) unit = find_unit(label.unit);
+  if (unit) label.quantity = unit->quantity;
+  return label;
+}
+
 bool is_field_name(std::string_view base) {
-  return std::ranges::any_of(channel_infos, [&](const ChannelInfo& c) { return place_of(base, c.names) != no_rank; });
+  return std::ranges::any_of(channel_infos, [&](const ChannelInfo& c) { return is_among(base, c.names); });
 }
 
 std::size_t name_rank(std::string_view base, Channel channel, std::optional<Quantity> quantity) {
@@ -100,11 +93,47 @@ std::size_t name_rank(std::string_view base, Channel channel, std::optional<Quan
   if ((channel == Channel::speed || channel == Channel::angle) && !fits) return no_rank;
   if (channel == Channel::force && base == "friction" && quantity == Quantity::force) return 100;
   if (channel == Channel::mu && base == "friction" && quantity == Quantity::force) return no_rank;
-  return place_of(base, info_of(channel).names);
+  return place_among(base, info_of(channel).names);
 }
 
 bool names_rpm(std::string_view base) {
   return base == "rpm" || base == "drehzahl";
+}
+
+bool names_load_point(std::string_view base) {
+  return base.starts_with("lp") || base.find("loadpoint") != std::string::npos || base == "xlp";
+}
+
+std::string lists_columns(const std::string& path) {
+  return fmt::format("'identify columns {}' lists what it holds", path);
+}
+
+std::size_t named_column(const RawTable& table, const std::string& wanted, Channel channel) {
+  const auto& columns = table.columns;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i].named && columns[i].name == wanted) return i;
+  }
+  if (wanted.size() > 1 && wanted[0] == '#') {
+    std::size_t number = 0;
+    const char* end = wanted.data() + wanted.size();
+    const auto [last, error] = std::from_chars(wanted.data() + 1, end, number);
+    if (error == std::errc{} && last == end && number >= 1 && number <= columns.size()) return number - 1;
+    throw InputError(fmt::format("there is no column {} for {}", wanted, to_string(channel)),
+                     fmt::format("the file has {} columns, #1 to #{}; {}", columns.size(), columns.size(),
+                                 lists_columns(table.path)),
+                     table.heading());
+  }
+  const std::string lower = lower_case(wanted), base = parse_column_name(wanted).base;
+  std::vector<std::size_t> similar;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const std::string& name = columns[i].name;
+    if (lower_case(name) == lower || parse_column_name(name).base == base) similar.push_back(i);
+  }
+  if (similar.size() == 1) return similar.front();
+  const std::vector<std::string> names = table.names();
+  throw InputError(
+      fmt::format("there is no column '{}' for {}{}", wanted, to_string(channel), did_you_mean(wanted, names)),
+      "the columns are: " + listed(names) + "; " + lists_columns(table.path), table.heading());
 }
 
 std::optional<double> find_sensitivity(std::string_view text, Channel channel) {

@@ -1,13 +1,11 @@
-#include "gaps.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "limits.hpp"
+#include "recording.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/ingest/spelling.hpp"
 #include "tribofit/output/digits.hpp"
 
 namespace tribofit {
@@ -19,8 +17,8 @@ bool is_usable(double value) {
 
 [[noreturn]] void refuse(const RawTable& table, const std::vector<Column>& used, std::size_t row,
                          const FileRecord& recording) {
-  const auto column = std::find_if(used.begin(), used.end(),
-                                   [&](const Column& c) { return !is_usable(table.columns[c.index].numbers[row]); });
+  const auto column =
+      std::ranges::find_if(used, [&](const Column& c) { return !is_usable(table.columns[c.index].numbers[row]); });
   const InputLocation where = recording.location(row, column->channel);
   const auto& known = table.first_gap;
   if (known && known->row == row) throw InputError(known->problem, known->advice, where);
@@ -44,7 +42,7 @@ std::vector<std::size_t> find_gappy_rows(const RawTable& table, const std::vecto
   rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
   if (rows.empty()) return rows;
   const std::size_t all = table.columns[used.front().index].numbers.size();
-  bool isolated = rows.size() * kRowsPerLostRow <= all;
+  bool isolated = rows.size() * kRowsPerGap <= all;
   for (std::size_t k = kMostLostInARow; k < rows.size() && isolated; ++k) {
     isolated = rows[k] - rows[k - kMostLostInARow] > kMostLostInARow;
   }
@@ -63,45 +61,25 @@ std::vector<std::size_t> find_repeated_rows(const FileRecord& recording) {
 
 void exclude(const std::vector<std::size_t>& rows, std::string_view what, FileRecord& recording) {
   if (rows.empty()) return;
-  constexpr std::size_t most_shown = 12;
-  std::vector<std::string> places;
-  for (const std::size_t row : rows) {
-    if (places.size() == most_shown) {
-      places.emplace_back("...");
-      break;
-    }
-    const InputLocation where = recording.location(row, Channel::time);
-    places.push_back(std::to_string(where.line > 0 ? where.line : where.value));
+  const bool one = rows.size() == 1;
+  recording.warnings.push_back(fmt::format("{} row{} {} {} left out as {} ({})", rows.size(), one ? "" : "s", what,
+                                           one ? "was" : "were", one ? "a gap" : "gaps", recording.places_of(rows)));
+  std::vector<bool> kept(recording.rows(), true);
+  for (const std::size_t row : rows) kept[row] = false;
+  LineMap lines;
+  const bool has_lines = recording.lines.line_of(0) > 0;
+  for (std::size_t i = 0, to = 0; has_lines && i < kept.size(); ++i) {
+    if (kept[i]) lines.set(to++, recording.lines.line_of(i));
   }
-  const char* plural = rows.size() == 1 ? "" : "s";
-  const char* unit = recording.location(rows.front(), Channel::time).line > 0 ? "line" : "value";
-  recording.warnings.push_back(fmt::format("{} row{} {} {} left out as {} ({}{} {})", rows.size(), plural, what,
-                                           rows.size() == 1 ? "was" : "were", rows.size() == 1 ? "a gap" : "gaps", unit,
-                                           plural, listed(places)));
-  std::size_t size = 0;
+  recording.lines = std::move(lines);
   for (const Channel which : recording.present()) {
     std::vector<double>& channel = recording[which];
-    size = channel.size();
-    std::size_t to = rows.front(), next = 0;
-    for (std::size_t i = to; i < size; ++i) {
-      if (next < rows.size() && rows[next] == i) {
-        ++next;
-      } else {
-        channel[to++] = channel[i];
-      }
+    std::size_t to = 0;
+    for (std::size_t i = 0; i < channel.size(); ++i) {
+      if (kept[i]) channel[to++] = channel[i];
     }
     channel.resize(to);
   }
-  const bool has_lines = recording.lines.line_of(0) > 0;
-  LineMap lines;
-  for (std::size_t i = 0, next = 0; has_lines && i < size; ++i) {
-    if (next < rows.size() && rows[next] == i) {
-      ++next;
-    } else {
-      lines.set(i - next, recording.lines.line_of(i));
-    }
-  }
-  recording.lines = std::move(lines);
   for (RawStep& step : recording.stated_steps) {
     step.begin -= static_cast<std::size_t>(std::lower_bound(rows.begin(), rows.end(), step.begin) - rows.begin());
   }

@@ -7,6 +7,8 @@
 namespace tribofit {
 namespace {
 
+std::string (*setting_name)(std::string_view key) = nullptr;
+
 std::string sentence(const std::string& problem, const std::string& advice, const InputLocation& where) {
   std::string text = where.file;
   if (where.line > 0) text += (text.empty() ? "line " : ":") + std::to_string(where.line);
@@ -26,5 +28,15 @@ InputError::InputError(std::string problem, std::string advice, InputLocation wh
       problem_(std::move(problem)),
       advice_(std::move(advice)),
       where_(std::move(where)) {}
+
+std::string setting(std::string_view key, std::string_view value) {
+  std::string text = setting_name != nullptr ? setting_name(key) : std::string(key);
+  if (!value.empty()) text.append(" ").append(value);
+  return text;
+}
+
+void name_settings(std::string (*name)(std::string_view key)) {
+  setting_name = name;
+}
 
 }  // namespace tribofit

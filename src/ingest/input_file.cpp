@@ -9,7 +9,6 @@
 #include <cerrno>
 #include <cstring>
 
-#include "tribofit/ingest/files_opened.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/text_of_file.hpp"
 
@@ -65,8 +64,12 @@ std::string text_of_file(const std::string& path, std::uint64_t most, const std:
     throw InputError("has " + std::to_string(file.size()) + " bytes, where up to " + std::to_string(most) + " are read",
                      advice, {path, 0, ""});
   }
-  std::string text(static_cast<std::size_t>(file.size()), '\0');
-  text.resize(file.read(0, text));
+  return file.read_text(0, file.size());
+}
+
+std::string InputFile::read_text(std::uint64_t offset, std::uint64_t most) const {
+  std::string text(static_cast<std::size_t>(std::min(most, size_ - std::min(offset, size_))), '\0');
+  text.resize(read(offset, text));
   return text;
 }
 

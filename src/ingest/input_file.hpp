@@ -23,6 +23,8 @@ class InputFile {
 
   /// Fills `buffer` from `offset`; fewer bytes than asked for only at the end of the file.
   std::size_t read(std::uint64_t offset, std::span<char> buffer) const;
+  /// Up to `most` bytes from `offset`; fewer only at the end of the file.
+  std::string read_text(std::uint64_t offset, std::uint64_t most) const;
 
  private:
   std::string path_;

@@ -1,5 +1,3 @@
-#include "join.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,9 +5,9 @@
 #include <limits>
 #include <utility>
 
-#include "clock.hpp"
 #include "content_hash.hpp"
 #include "limits.hpp"
+#include "recording.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
@@ -100,7 +98,7 @@ void add_channels(FileRecord& run, const FileRecord& other, double offset) {
   const bool one_file = run.path == other.path;
   if (end - begin < 2) {
     throw InputError(one_file ? "the channels do not overlap in time" : "the two files do not overlap in time",
-                     "check that they are of the same run", {other.path, 0, ""});
+                     "check that they are of the same run", other.file());
   }
   const double start = base[static_cast<std::size_t>(begin)];
   const auto dropped = static_cast<std::ptrdiff_t>(base.size()) - (end - begin);
@@ -143,7 +141,7 @@ void join(FileRecord& run, FileRecord other, const ClockOffsetFinder& find) {
     if (!run.has(channel) || !other.has(channel)) continue;
     throw InputError(fmt::format("holds {} like {}", to_string(channel), run.path),
                      "two instruments must record different channels; files of one run are continued, not joined",
-                     {other.path, 0, ""});
+                     other.file());
   }
   for (const std::string& note : other.notes) run.notes.push_back("second file: " + note);
   for (const std::string& warning : other.warnings) run.warnings.push_back("second file: " + warning);

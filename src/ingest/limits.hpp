@@ -14,8 +14,9 @@ namespace tribofit {
 inline constexpr double kGapInterval = 1.5;
 /// Intervals whose median is the usual one: more cost time and do not move it.
 inline constexpr std::size_t kIntervalsForMedian = 4096;
-/// Gaps in all, and one in so many rows, from which the clock is irregular: a recording that pauses has a few. Fewer
-/// allowed: such a recording is refused; more: a clock written too coarsely becomes hundreds of steps.
+/// Gaps in all, and one in so many rows, from which the clock is irregular: a recording that pauses has a few, and a
+/// logger drops a value now and then, which is no loss. Fewer allowed: such a recording is refused; more: a clock
+/// written too coarsely becomes hundreds of steps.
 inline constexpr std::size_t kMostGaps = 20, kRowsPerGap = 1000;
 /// Rows per row at the time of the one before, which a machine writes where it changes its sampling: more of them are a
 /// clock that is written too coarsely.
@@ -32,9 +33,8 @@ inline constexpr std::size_t kFewestBreakAways = 3;
 
 // ---- rows that are left out
 
-/// A logger drops a value now and then: one row in so many is no loss to a record. More in a row are more than a
-/// hiccup, and a phase of the motion may have begun in them.
-inline constexpr std::size_t kRowsPerLostRow = 1000, kMostLostInARow = 3;
+/// Rows that are lost in a row: more are more than a hiccup, and a phase of the motion may have begun in them.
+inline constexpr std::size_t kMostLostInARow = 3;
 /// Lines of text between rows, one in so many rows, from which dropping them is worth a warning.
 inline constexpr std::size_t kRowsPerStrayLine = 100;
 
@@ -53,15 +53,11 @@ inline constexpr std::size_t kIntervalsPerReturn = 10;
 inline constexpr double kSpeedKnownTo = 0.02;
 /// The same of a load: dead weights and springs are known less well, and a load channel has a zero of its own.
 inline constexpr double kLoadKnownTo = 0.1;
-/// Rounding of a value that is declared in one place and stated in another, and standard uncertainties of the declared
-/// one within which both are the same.
-inline constexpr double kDeclaredRounding = 1e-6, kDeclaredWithin = 2;
-/// Rounding of one condition in two units (4 rpm, 0.419 rad/s written out).
-inline constexpr double kConditionRounding = 1e-9;
-/// Radius of a contact [m]: smaller than an atom, or a forgotten unit.
-inline constexpr double kSmallestRadius = 1e-9, kLargestRadius = 10;
-/// Speed [rad/s] and load [N] beyond which the header of a file states something else.
-inline constexpr double kLargestSpeed = 1e6, kLargestLoad = 1e12;
+/// Rounding of one condition in two places or two units (4 rpm, 0.418879 rad/s), and standard uncertainties of a
+/// declared one within which both are the same.
+inline constexpr double kConditionRounding = 1e-6, kDeclaredWithin = 2;
+/// Radius of a contact [m]: smaller than an atom.
+inline constexpr double kSmallestRadius = 1e-9;
 /// Load [N] that friction can be divided by.
 inline constexpr double kSmallestLoad = 1e-12;
 /// Coefficient of friction beyond any dry contact: the column is a force.

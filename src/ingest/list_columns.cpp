@@ -5,27 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <span>
 
-#include "assemble.hpp"
-#include "column_names.hpp"
-#include "columns.hpp"
 #include "limits.hpp"
-#include "points.hpp"
-#include "reader.hpp"
 #include "recording.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/execution/parallel.hpp"
-#include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 namespace {
 
-std::string unit_of(const RawColumn& column, const ColumnName& name) {
-  return name.unit && !name.unit->empty() ? *name.unit : column.unit;
-}
-
-/// The name that --columns finds each column by: itself, or its number where another has the same or it cannot be
+/// The name by which each column is asked for: itself, or its number where another has the same or it cannot be
 /// typed.
 std::vector<std::string> requests_for(const RawTable& table) {
   std::map<std::string_view, std::size_t> count;
@@ -38,14 +28,10 @@ std::vector<std::string> requests_for(const RawTable& table) {
   return requests;
 }
 
-/// The channel that a name alone stands for.
-std::string channel_named(const RawColumn& column) {
-  const ColumnName name = parse_column_name(column.name);
-  const auto unit = find_unit(unit_of(column, name));
-  const auto quantity = unit && !unit_of(column, name).empty() ? std::optional(unit->quantity) : std::nullopt;
-  for (std::size_t k = 0; column.named && k < channel_count; ++k) {
-    if (name_rank(name.base, static_cast<Channel>(k), quantity) != no_rank)
-      return std::string(to_string(static_cast<Channel>(k)));
+/// The channel that a name alone stands for; empty: none.
+std::string channel_named(const Label& label) {
+  for (const Channel channel : all_channels) {
+    if (name_rank(label.base, channel, label.quantity) != no_rank) return std::string(to_string(channel));
   }
   return {};
 }
@@ -59,44 +45,41 @@ void recognise(const RawTable& table, const ReadOptions& options, ColumnListing&
   } catch (const InputError& error) {
     const std::string where = error.where().column.empty() ? "" : "column " + error.where().column + ": ";
     listing.notes.push_back(where + error.problem() + "; " + error.advice());
-    for (std::size_t i = 0; i < table.columns.size(); ++i) listing.columns[i].channel = channel_named(table.columns[i]);
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+      if (table.columns[i].named) listing.columns[i].channel = channel_named(label_of(table.columns[i]));
+    }
   }
 }
 
-bool contains_any(std::string_view text, std::initializer_list<const char*> words) {
-  return std::any_of(words.begin(), words.end(),
-                     [&](const char* word) { return text.find(word) != std::string_view::npos; });
-}
+/// A unit, with one of these parts in the name (if there are any), that suggests a channel.
+struct Hint {
+  Quantity quantity;
+  Channel channel;
+  std::string_view parts = {};
+};
+constexpr Hint hints[] = {{Quantity::angular_velocity, Channel::speed},
+                          {Quantity::torque, Channel::torque},
+                          {Quantity::temperature, Channel::temperature},
+                          {Quantity::length, Channel::x_d, "base drive stage carriage lp loadp ram piston"},
+                          {Quantity::length, Channel::x_b, "displ block slider mass vib laser"},
+                          {Quantity::velocity, Channel::v_b, "block vib laser"},
+                          {Quantity::velocity, Channel::v_r},
+                          {Quantity::force, Channel::load, "load normal weight fz fn"},
+                          {Quantity::force, Channel::force, "force fric trac tang lateral fx ft"},
+                          {Quantity::pressure, Channel::load, "normal norm sigma sn"},
+                          {Quantity::pressure, Channel::force, "shear tau"}};
 
 /// What the name or the unit of a column suggests that it holds; empty where they suggest nothing.
 std::string likely_channel(const RawColumn& column) {
-  const ColumnName name = parse_column_name(column.name);
-  const std::string text = unit_of(column, name);
-  const auto unit = find_unit(text);
-  const bool has_unit = unit && !text.empty();
-  const bool load = contains_any(name.base, {"load", "normal", "weight", "fz", "fn"});
-  if (has_unit && find_unit(text, Quantity::angular_velocity)) return "speed";
-  if (has_unit && unit->quantity == Quantity::torque) return "torque";
-  if (has_unit && unit->quantity == Quantity::temperature) return "temperature";
-  if (has_unit && unit->quantity == Quantity::length) {
-    if (contains_any(name.base, {"base", "drive", "stage", "carriage", "lp", "loadp", "ram", "piston"})) return "x_d";
-    if (contains_any(name.base, {"displ", "block", "slider", "mass", "vib", "laser"})) return "x_b";
+  Label label = label_of(column);
+  for (const Hint& hint : hints) {
+    const std::vector<std::string> parts = split(hint.parts, ' ');  // an empty one is in every name
+    const auto is_in_name = [&](const std::string& part) { return label.base.find(part) != std::string::npos; };
+    if (label.quantity == hint.quantity && std::ranges::any_of(parts, is_in_name))
+      return std::string(to_string(hint.channel));
   }
-  if (has_unit && unit->quantity == Quantity::velocity)
-    return contains_any(name.base, {"block", "vib", "laser"}) ? "v_b" : "v_r";
-  if (has_unit && unit->quantity == Quantity::force) {
-    if (load) return "load";
-    if (contains_any(name.base, {"force", "fric", "trac", "tang", "lateral", "fx", "ft"})) return "force";
-  }
-  if (has_unit && unit->quantity == Quantity::pressure) {
-    if (contains_any(name.base, {"normal", "norm", "sigma", "sn"})) return "load";
-    if (contains_any(name.base, {"shear", "tau"})) return "force";
-  }
-  const std::size_t end = name.base.find_last_not_of("0123456789");  // "Force1_N"
-  RawColumn without_number = column;
-  without_number.name = end == std::string::npos ? "" : name.base.substr(0, end + 1);
-  without_number.unit = text;
-  return end == std::string::npos ? "" : channel_named(without_number);
+  label.base.erase(label.base.find_last_not_of("0123456789") + 1);  // "Force1_N"
+  return column.named ? channel_named(label) : std::string();
 }
 
 /// Where a channel has no column, those that are likely to be it.
@@ -140,7 +123,6 @@ void take_numbers(const RawColumn& column, bool is_finite, ListedColumn& listed)
     listed.count = column.numbers.size(), listed.lowest = all.low, listed.highest = all.high;
     return;
   }
-  listed.count = column.is_text ? column.texts.size() : 0;
   for (const double value : column.numbers) {
     if (!(std::abs(value) < kLargestValue)) continue;
     listed.lowest = listed.count == 0 ? value : std::min(listed.lowest, value);
@@ -158,10 +140,11 @@ bool select(std::initializer_list<const char*> channels, ColumnListing& listing)
         return c.channel == channel && c.is_likely == likely;
       });
       if (column == listing.columns.end()) continue;
-      const bool needs_unit = channel == "v_b" || channel == "v_r" || channel == "speed" || channel == "x_b";
-      const bool bare = needs_unit && column->unit.empty() && !names_rpm(parse_column_name(column->name).base);
-      const std::string unit = !bare ? "" : channel == "speed" ? "rpm" : channel == "x_b" ? "mm" : "mm/s";
-      const std::string request = column->request + (bare ? ":" + unit : "");
+      const ChannelInfo& info = *std::ranges::find(channel_infos, channel, &ChannelInfo::key);
+      const bool of_machine = channel == "x_d" || channel == "v_lp";
+      const bool bare = info.unitless == Unitless::unknown && !of_machine && column->unit.empty() &&
+                        !names_rpm(parse_column_name(column->name).base);
+      const std::string unit(info.unit), request = column->request + (bare ? ":" + unit : "");
       if (bare) listing.assumed.push_back(unit + " of " + channel);
       listing.selected.emplace(channel, request);
       listing.selection += (listing.selection.empty() ? "" : ",") + channel + "=" + request;
@@ -196,7 +179,7 @@ ColumnListing listing_of(RawTable& table, const ReadOptions& options) {
     ListedColumn listed;
     listed.name = column.name;
     listed.place = column.place;
-    listed.unit = unit_of(column, parse_column_name(column.name));
+    listed.unit = label_of(column).unit;
     listed.is_text = column.is_text;
     listed.request = requests[i];
     listing.columns.push_back(std::move(listed));
@@ -216,21 +199,28 @@ ColumnListing listing_of(RawTable& table, const ReadOptions& options) {
   return listing;
 }
 
-/// With which it is seen whether a radius is all that is missing [m].
-constexpr double kExampleRadius = 0.015;
-
-/// Tries the columns that a listing selects.
+/// Tries the columns that a listing selects; where they make no trace, with some radius too.
 void try_selected(RawTable table, const std::string& path, ReadOptions options, TriedColumns& tried) {
   options.columns = tried.listing.selected;
-  const bool given = options.conditions.radius.known();
+  Condition& radius = options.conditions.radius;
+  const bool given = radius.known();
   tried.needs_radius = true;
   try {
-    const Trace trace = assemble(read_recording(std::move(table), path, options), options);
-    const bool stated =
-        trace.conditions.radius.known() || std::any_of(trace.steps.begin(), trace.steps.end(),
-                                                       [](const Step& step) { return step.conditions.radius.known(); });
-    tried.obstacle.clear();
-    tried.needs_radius = given || (!stated && trace.velocity_kind != VelocityKind::relative);
+    const FileRecord recording = read_recording(std::move(table), path, options);
+    const auto try_radius = [&] {
+      const Trace trace = assemble(recording, options);
+      const bool stated = trace.conditions.radius.known() || std::ranges::any_of(trace.steps, [](const Step& step) {
+                            return step.conditions.radius.known();
+                          });
+      tried.needs_radius = radius.known() || (!stated && trace.velocity_kind != VelocityKind::relative);
+    };
+    try {
+      try_radius();
+    } catch (const InputError&) {
+      if (given) throw;
+      radius = {0.015, "example"};
+      try_radius();
+    }
   } catch (const InputError& error) {
     tried.obstacle = error.problem() + "; " + error.advice();
   }
@@ -246,12 +236,7 @@ ColumnListing list_columns(const std::string& path, const ReadOptions& options) 
 TriedColumns try_columns(const std::string& path, const ReadOptions& options) {
   RawTable table = read_table(path);
   TriedColumns tried{listing_of(table, options), "", false};
-  if (!tried.listing.missing.empty()) return tried;
-  try_selected(std::move(table), path, options, tried);
-  if (tried.obstacle.empty()) return tried;
-  ReadOptions with_radius = options;
-  with_radius.conditions.radius = {kExampleRadius, "example"};
-  try_selected(read_table(path), path, with_radius, tried);
+  if (tried.listing.missing.empty()) try_selected(std::move(table), path, options, tried);
   return tried;
 }
 

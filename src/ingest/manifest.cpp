@@ -1,6 +1,7 @@
 #include "tribofit/ingest/manifest.hpp"
 
 #include <fmt/format.h>
+#include <fnmatch.h>
 
 #include <algorithm>
 #include <charconv>
@@ -14,8 +15,9 @@
 
 #include "column_names.hpp"
 #include "csv/text_table.hpp"
+#include "input_file.hpp"
 #include "limits.hpp"
-#include "manifest_roles.hpp"
+#include "stated_conditions.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/output_tables.hpp"
@@ -30,24 +32,8 @@ namespace fs = std::filesystem;
 constexpr std::string_view kColumns = "the columns are file, radius, speed, load, repeat and others of your own";
 
 /// Whether `name` fits a pattern of literal bytes, * (any run of them) and ? (any one).
-bool fits(std::string_view pattern, std::string_view name) {
-  std::size_t p = 0, n = 0, star = std::string_view::npos, behind = 0;
-  while (n < name.size()) {
-    if (p < pattern.size() && pattern[p] == '*') {
-      star = p++;
-      behind = n;
-    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
-      ++p;
-      ++n;
-    } else if (star != std::string_view::npos) {
-      p = star + 1;
-      n = ++behind;
-    } else {
-      return false;
-    }
-  }
-  while (p < pattern.size() && pattern[p] == '*') ++p;
-  return p == pattern.size();
+bool fits(const std::string& pattern, const std::string& name) {
+  return ::fnmatch(replaced(pattern, "[", "[[]").c_str(), name.c_str(), FNM_NOESCAPE) == 0;
 }
 
 /// Names of the files of a folder, sorted; hidden ones, the manifest and what --csv wrote left out.
@@ -74,7 +60,7 @@ class ManifestReader {
     text_ = read_text_table(manifest_.path,
                             {kLargestManifest, "is too large for a manifest", "one row a run is meant", advice});
     read_header();
-    for (std::size_t row = 0; row < text_.rows(); ++row) take_row(row);
+    for (std::size_t row = 0; row < text_.rows.size(); ++row) take_row(row);
     if (manifest_.rows.empty() && manifest_.problems.empty())
       refuse("lists no runs", "add a row for each run, or remove the manifest", 0);
     note_others();
@@ -83,9 +69,10 @@ class ManifestReader {
 
  private:
   struct ManifestColumn {
-    std::string name;  // as the file gives it
-    Role role;
-    std::string unit;  // empty: in the cells
+    std::string name;                // as the file gives it
+    std::string role;                // "file", "repeat", the name of a condition; empty: another
+    const ConditionInfo* condition;  // nullptr: it is none
+    std::string unit;                // empty: in the cells
   };
 
   [[noreturn]] void refuse(std::string problem, std::string advice, std::size_t line, std::string column = {}) const {
@@ -93,57 +80,55 @@ class ManifestReader {
   }
 
   void read_header() {
-    for (const RawColumn& column : text_.table.columns) {
-      if (column.named) add_column(column.name, column.line);
-    }
-    if (count(Role::file) == 1) return;
+    for (const std::string& name : text_.names) add_column(name);
+    if (find("file") != nullptr) return;
     std::vector<std::string> names;
     for (const ManifestColumn& column : columns_) {
       if (likely_name("file", std::vector{lower_case(column.name)}).empty()) continue;
       names.push_back(column.name);
     }
     refuse("there is no column 'file'" + (names.empty() ? "" : " (is it '" + names.front() + "'?)"),
-           fmt::format("name the column of the traces' names 'file'; {}", kColumns), text_.header_line());
+           fmt::format("name the column of the traces' names 'file'; {}", kColumns), text_.header_line);
   }
 
-  std::size_t count(Role role) const {
-    return static_cast<std::size_t>(
-        std::count_if(columns_.begin(), columns_.end(), [&](const ManifestColumn& c) { return c.role == role; }));
+  const ManifestColumn* find(std::string_view role) const {
+    const auto at = std::ranges::find(columns_, role, &ManifestColumn::role);
+    return at != columns_.end() ? &*at : nullptr;
   }
 
-  void add_column(const std::string& text, std::size_t line) {
+  void add_column(const std::string& text) {
     const ColumnName name = parse_column_name(text);
-    ManifestColumn column{text, role_of(name), ""};
-    const bool measured = column.role == Role::radius || column.role == Role::speed || column.role == Role::load;
-    if (measured) column.unit = name.unit.value_or(names_rpm(name.base) ? "rpm" : "");
-    if (measured && !column.unit.empty()) check_unit(column, line);
-    if (column.role != Role::other && count(column.role) > 0) {
-      refuse(fmt::format("a second column of the same kind as '{}'", named(column.role)), "keep one of them", line,
-             text);
+    ManifestColumn column{text, "", find_condition(name.base), ""};
+    if (column.condition != nullptr) {
+      column.role = column.condition->name;
+      column.unit = name.unit.value_or(names_rpm(name.base) ? "rpm" : "");
+      if (!column.unit.empty()) check_unit(column);
+    } else if (is_among(name.base, "file filename trace path datei")) {
+      column.role = "file";
+    } else if (is_among(name.base, "repeat repetition replicate rep wiederholung")) {
+      column.role = "repeat";
+    }
+    if (!column.role.empty() && find(column.role) != nullptr) {
+      refuse(fmt::format("a second column of the same kind as '{}'", find(column.role)->name), "keep one of them",
+             text_.header_line, text);
     }
     columns_.push_back(std::move(column));
   }
 
-  const std::string& named(Role role) const {
-    return std::find_if(columns_.begin(), columns_.end(), [&](const ManifestColumn& c) { return c.role == role; })
-        ->name;
-  }
+  const std::string& file_column() const { return find("file")->name; }
 
-  void check_unit(const ManifestColumn& column, std::size_t line) const {
-    const Quantity quantity = quantity_of(column.role);
+  void check_unit(const ManifestColumn& column) const {
+    const Quantity quantity = column.condition->quantity;
     const std::string example =
         fmt::format("give {} such as {}", with_article(to_string(quantity)), example_of(quantity));
     const auto unit = find_unit(column.unit);
-    if (!unit) {
-      const std::string nearest = suggest_unit(column.unit);
-      refuse(fmt::format("unknown unit '{}'", column.unit),
-             nearest.empty() ? example : fmt::format("did you mean {}? {}", nearest, example), line, column.name);
-    }
-    if (!find_unit(column.unit, quantity)) {
-      refuse(fmt::format("'{}' is a unit of {}, not of {}", column.unit, with_article(to_string(unit->quantity)),
-                         with_article(to_string(quantity))),
-             example, line, column.name);
-    }
+    if (unit && find_unit(column.unit, quantity)) return;
+    const std::string nearest = unit ? "" : suggest_unit(column.unit);
+    refuse(unit ? fmt::format("'{}' is a unit of {}, not of {}", column.unit, with_article(to_string(unit->quantity)),
+                              with_article(to_string(quantity)))
+                : fmt::format("unknown unit '{}'", column.unit),
+           nearest.empty() ? example : fmt::format("did you mean {}? {}", nearest, example), text_.header_line,
+           column.name);
   }
 
   void take_row(std::size_t at) {
@@ -160,7 +145,7 @@ class ManifestReader {
       }
       ManifestRow row;
       row.path = path;
-      row.line = text_.line_of(at);
+      row.line = text_.rows[at].line;
       row.problem = error.what();
       manifest_.rows.push_back(std::move(row));
     }
@@ -169,30 +154,29 @@ class ManifestReader {
   void read_row(std::size_t at) {
     const std::vector<std::string> cells = text_.cells_of(at);
     ManifestRow row;
-    row.line = text_.line_of(at);
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-      if (columns_[k].role == Role::file) file_ = cells[k];
-    }
+    row.line = text_.rows[at].line;
+    file_ = cells[static_cast<std::size_t>(find("file") - columns_.data())];
     for (std::size_t k = 0; k < cells.size(); ++k) {
       const ManifestColumn& column = columns_[k];
       if (cells[k].empty()) continue;
-      if (column.role == Role::radius) row.conditions.radius = condition(cells[k], column, row.line);
-      if (column.role == Role::speed) row.conditions.speed = condition(cells[k], column, row.line);
-      if (column.role == Role::load) row.conditions.load = condition(cells[k], column, row.line);
-      if (column.role == Role::repeat) row.repeat = repeat(cells[k], column, row.line);
-      if (column.role == Role::other) row.others.push_back({column.name, cells[k]});
+      if (column.condition != nullptr) {
+        row.conditions.*column.condition->member = condition(cells[k], column, row.line);
+      } else if (column.role == "repeat") {
+        row.repeat = repeat(cells[k], column, row.line);
+      } else if (column.role.empty()) {
+        row.others.push_back({column.name, cells[k]});
+      }
     }
-    if (file_.empty()) {
-      refuse("the row names no file", "fill in the file or remove the row", row.line, named(Role::file));
-    }
+    if (file_.empty()) refuse("the row names no file", "fill in the file or remove the row", row.line, file_column());
     add_runs(file_, row);
   }
 
   Condition condition(const std::string& cell, const ManifestColumn& column, std::size_t line) {
     const std::string text = text_.with_decimal_point(cell);
-    if (column.role == Role::load && column.unit.empty() && is_bare_number(text)) bare_loads_ = true;
+    const bool is_load = column.condition->quantity == Quantity::force;
+    bare_loads_ = bare_loads_ || (is_load && column.unit.empty() && is_bare_number(text));
     try {
-      return {condition_in_cell(text, column.role, column.name, column.unit), "manifest"};
+      return {condition_in_cell(text, *column.condition, column.name, column.unit), "manifest"};
     } catch (const InputError& error) {
       refuse(error.problem(), error.advice(), line, column.name);
     }
@@ -214,27 +198,27 @@ class ManifestReader {
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) {
       refuse(fmt::format("'{}' is a folder", file), "name a file, or several as in runs/*.csv", row.line,
-             named(Role::file));
+             file_column());
     }
     if (fs::exists(path, ignored)) return add_run(path.string(), row);
     const std::vector<std::string> names = files_of(path.parent_path());
     const std::string last = path.filename().string();
     if (last.find_first_of("*?") == std::string::npos) {
       refuse(fmt::format("'{}' does not exist{}", file, did_you_mean(last, names)),
-             "names are relative to the folder of the manifest", row.line, named(Role::file));
+             "names are relative to the folder of the manifest", row.line, file_column());
     }
     std::size_t found = 0;
     for (const std::string& name : names) {
       if (!fits(last, name)) continue;
       if (++found > 1 && row.repeat) {
         refuse(fmt::format("'{}' fits several files, which cannot all be repeat {}", file, *row.repeat),
-               "leave the repeat empty or list the files one by one", row.line, named(Role::repeat));
+               "leave the repeat empty or list the files one by one", row.line, find("repeat")->name);
       }
       add_run((path.parent_path() / name).string(), row);
     }
     if (found == 0) {
       refuse(fmt::format("no file fits '{}'", file), "names are relative to the folder of the manifest", row.line,
-             named(Role::file));
+             file_column());
     }
   }
 
@@ -247,7 +231,7 @@ class ManifestReader {
     }
     ManifestRow& earlier = manifest_.rows[known->second];
     const std::string name = fs::path(path).filename().string();
-    const std::string& column = named(Role::file);
+    const std::string& column = file_column();
     if (same_conditions(earlier, row) && earlier.repeat == row.repeat) {
       name_problem({fmt::format("'{}' is listed twice, in line {} and here", name, earlier.line),
                     "remove one of the rows",
@@ -274,7 +258,7 @@ class ManifestReader {
   void note_others() {
     std::vector<std::string> others;
     for (const ManifestColumn& column : columns_) {
-      if (column.role == Role::other && !column.name.empty()) others.push_back(column.name);
+      if (column.role.empty() && !column.name.empty()) others.push_back(column.name);
     }
     if (!others.empty()) {
       manifest_.notes.push_back(fmt::format("{}: further conditions: {}", manifest_.path, listed(others)));
@@ -299,6 +283,17 @@ bool same(const Condition& a, const Condition& b) {
 
 }  // namespace
 
+bool is_output_table(const std::string& path) {
+  const std::string name = fs::path(path).filename().string();
+  const auto known = std::ranges::find(output_tables, name, &OutputTable::name);
+  if (known == output_tables.end()) return false;
+  try {
+    return InputFile(path).read_text(0, known->header.size()) == known->header;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 Manifest read_manifest(const std::string& folder, ManifestErrors errors) {
   return ManifestReader(folder, errors).read();
 }
@@ -307,9 +302,10 @@ bool same_conditions(const ManifestRow& a, const ManifestRow& b) {
   const auto same_text = [](const OtherCondition& x, const OtherCondition& y) {
     return x.name == y.name && x.value == y.value;
   };
-  return same(a.conditions.radius, b.conditions.radius) && same(a.conditions.speed, b.conditions.speed) &&
-         same(a.conditions.load, b.conditions.load) &&
-         std::equal(a.others.begin(), a.others.end(), b.others.begin(), b.others.end(), same_text);
+  const bool same_known = std::ranges::all_of(condition_infos, [&](const ConditionInfo& info) {
+    return same(a.conditions.*info.member, b.conditions.*info.member);
+  });
+  return same_known && std::equal(a.others.begin(), a.others.end(), b.others.begin(), b.others.end(), same_text);
 }
 
 }  // namespace tribofit

@@ -6,10 +6,6 @@
 
 namespace tribofit {
 
-/// Memory that the system has left for this process [bytes]: what it can free without swapping, within the limits of
-/// the process and its control group. The largest number where nothing says how much.
-std::uint64_t available_memory();
-
 /// Memory of this process [bytes], that which is not in use among it; 0 where nothing says how much.
 std::uint64_t used_memory();
 

@@ -56,17 +56,16 @@ struct RawRows {
 
 /// A named column of numbers or text.
 struct RawColumn {
-  std::string name;             ///< as the file gives it; "#3" where it gives none
-  bool named = true;            ///< the file gives the name
-  std::string unit;             ///< stated apart from the name, without brackets; empty: none
-  std::string place;            ///< where it stands, if the name does not say: "block 3", "group Vibrometer"
-  std::size_t line = 0;         ///< that names it; 0: none does
-  std::size_t unit_line = 0;    ///< that states its unit
-  std::size_t rows = 0;         ///< which of RawTable::rows
-  std::size_t count = 0;        ///< of its values, where that is known before they are loaded
-  bool is_text = false;         ///< holds text, as far as is known before its values are loaded
-  std::vector<double> numbers;  ///< as written, not yet in SI
-  std::vector<std::string> texts;
+  std::string name;                   ///< as the file gives it; "#3" where it gives none
+  bool named = true;                  ///< the file gives the name
+  std::string unit;                   ///< stated apart from the name, without brackets; empty: none
+  std::string place;                  ///< where it stands, if the name does not say: "block 3", "group Vibrometer"
+  std::size_t line = 0;               ///< that names it; 0: none does
+  std::size_t unit_line = 0;          ///< that states its unit
+  std::size_t rows = 0;               ///< which of RawTable::rows
+  std::size_t count = 0;              ///< of its values, where that is known before they are loaded
+  bool is_text = false;               ///< holds text, as far as is known before its values are loaded
+  std::vector<double> numbers;        ///< as written, not yet in SI
   std::optional<InputError> refusal;  ///< why its values cannot be read, where `load` could not
 
   std::string shown_name() const { return place.empty() ? name : name + " of " + place; }
@@ -101,8 +100,9 @@ struct RawTable {
 
   bool has_names() const;
   std::vector<std::string> names() const;
-  /// Where a column is named, for messages.
+  /// Where a column is named, and where the first one is, for messages.
   InputLocation heading(std::size_t column) const;
+  InputLocation heading() const { return {path, columns.empty() ? 0 : columns.front().line, ""}; }
 };
 
 }  // namespace tribofit

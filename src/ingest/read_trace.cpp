@@ -12,9 +12,7 @@
 #include <system_error>
 #include <utility>
 
-#include "assemble.hpp"
-#include "join.hpp"
-#include "reader.hpp"
+#include "csv/encoding.hpp"
 #include "recording.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -31,8 +29,7 @@ bool is_named(const NamedColumns& columns, std::string_view channel) {
 
 /// With two files a column may be in either; in one of those it is asked of it must be.
 void check_requests(const NamedColumns& columns, std::initializer_list<const FileRecord*> files) {
-  for (std::size_t k = 0; k < channel_count; ++k) {
-    const auto channel = static_cast<Channel>(k);
+  for (const Channel channel : all_channels) {
     if (!is_named(columns, to_string(channel))) continue;
     const auto holds = [&](const FileRecord* file) { return file->columns.find(channel) != nullptr; };
     if (std::any_of(files.begin(), files.end(), holds)) continue;
@@ -81,6 +78,27 @@ void refuse_twice(const std::string& path, const std::string& next) {
 }
 
 }  // namespace
+
+std::span<const Reader> all_readers() {
+  static const std::array readers = {matlab_reader, tdms_reader, uff_reader, csv_reader};
+  return readers;
+}
+
+RawTable read_table(const std::string& path, std::span<const Reader> readers) {
+  const auto file = std::make_shared<const InputFile>(path);
+  const std::string head = file->read_text(0, signature_bytes);
+  const auto known =
+      std::find_if(readers.begin(), readers.end(), [&](const Reader& reader) { return reader.recognises(head); });
+  if (known != readers.end()) {
+    RawTable table = known->read(file);
+    table.format = known->format;
+    return table;
+  }
+  refuse_unless_text(head, path);
+  std::vector<std::string> formats;
+  for (const Reader& reader : readers) formats.emplace_back(reader.format);
+  throw InputError("is of no known format", "export the trace as one of: " + listed(formats), {path, 0, ""});
+}
 
 Trace read_trace(const std::string& path, const ReadOptions& options, std::span<const Reader> readers) {
   ReadOptions first = options, second = options;

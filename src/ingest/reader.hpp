@@ -13,8 +13,9 @@ namespace tribofit {
 
 /// How to add a reader
 /// -------------------
-/// 1. A folder or file of its own in ingest/ that declares one `const Reader`, as csv/csv_reader.hpp does.
-/// 2. Its line in the list of reader.cpp, before those that are less particular (CSV takes any text and stands last).
+/// 1. A folder or file of its own in ingest/ that defines one `const Reader`, as csv/csv_reader.cpp does.
+/// 2. Its name below and in the list of reader.cpp, before those that are less particular (CSV takes any text and
+///    stands last).
 /// 3. One test in tests/ingest/, on files that the test itself writes, and a seed in tests/fuzz/write_seeds.cpp.
 /// Units, channels, clocks, steps, continued files and joins then work; nothing else knows of formats.
 ///
@@ -33,12 +34,10 @@ namespace tribofit {
 /// - Steps of a recipe go into RawRows::steps, with the conditions (radius, speed, load) the file states for each.
 /// - Where columns cost time or memory, `load` reads those that are asked for and no others; else it stays empty.
 /// - Places: a text file fills RawRows::lines and the columns' `line`; where lines have no meaning they stay 0,
-/// messages
-///   then count values ("value 12"), and `place` says where a column stands.
+///   messages then count values ("value 12"), and `place` says where a column stands.
 /// - Defects are refused with an InputError that names the offset, variable or line and says what to do: a file cut
-/// off,
-///   a wrong version, counts beyond the file's size. Check every count against InputFile::size() before memory is asked
-///   for. Numbers that are not finite are refused behind the seam, unless `is_finite` says that the reader did.
+///   off, a wrong version, counts beyond the file's size. Check every count against InputFile::size() before memory is
+///   asked for. Numbers that are not finite are refused behind the seam, unless `is_finite` says that the reader did.
 struct Reader {
   std::string_view format;  ///< for messages: "CSV", "MATLAB 5"
   bool (*recognises)(std::string_view head);
@@ -47,6 +46,8 @@ struct Reader {
 
 /// Bytes of a file that `recognises` is shown.
 inline constexpr std::size_t signature_bytes = 4096;
+
+extern const Reader csv_reader, matlab_reader, tdms_reader, uff_reader;
 
 /// The readers of the library, those of the more particular formats first.
 std::span<const Reader> all_readers();

@@ -3,54 +3,31 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
-#include "clock.hpp"
-#include "column_names.hpp"
 #include "content_hash.hpp"
-#include "gaps.hpp"
-#include "join.hpp"
 #include "limits.hpp"
-#include "load_point_columns.hpp"
 #include "memory.hpp"
-#include "points.hpp"
 #include "stated_conditions.hpp"
 #include "tribofit/execution/parallel.hpp"
-#include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/output/digits.hpp"
 
 namespace tribofit {
 namespace {
 
-void add_all(std::vector<std::string>& to, const std::vector<std::string>& from) {
-  to.insert(to.end(), from.begin(), from.end());
+using Texts = std::vector<std::string>;
+
+void add_all(Texts& to, const Texts& from, const std::string& before = {}) {
+  for (const std::string& text : from) to.push_back(before + text);
 }
 
 std::string file_name(const std::string& path) {
   return path.substr(path.find_last_of('/') + 1);
 }
 
-/// Notes and warnings of the table so far; each is taken once.
-void take_messages(RawTable& table, FileRecord& recording) {
-  add_all(recording.notes, std::exchange(table.notes, {}));
-  add_all(recording.warnings, std::exchange(table.warnings, {}));
-}
-
-/// The sets of rows that hold a channel.
-std::vector<std::size_t> rows_used(const RawTable& table, const std::vector<Column>& used) {
-  std::vector<std::size_t> sets;
-  for (const Column& column : used) {
-    const std::size_t rows = table.columns[column.index].rows;
-    if (std::find(sets.begin(), sets.end(), rows) == sets.end()) sets.push_back(rows);
-  }
-  return sets;
-}
-
-/// Of a set of rows: its columns, and how their time is known.
+/// A set of rows: its columns, and how their time is known.
 struct RowsPlan {
   std::size_t rows = 0;
   Columns columns;
@@ -61,32 +38,31 @@ struct RowsPlan {
 /// Throws InputError where the file has times, but for other rows than this column's.
 void refuse_without_time(const RawTable& table, const Column& column) {
   const std::size_t count = table.columns[column.index].count;
-  const auto is_time = [](const RawColumn& c) {
-    return name_rank(parse_column_name(c.name).base, Channel::time, std::nullopt) != no_rank;
-  };
-  if (count == 0 || std::none_of(table.columns.begin(), table.columns.end(), is_time)) return;
+  const auto is_time = [](const RawColumn& c) { return name_rank(label_of(c).base, Channel::time) != no_rank; };
+  if (count == 0 || std::ranges::none_of(table.columns, is_time)) return;
   throw InputError(fmt::format("holds {} values, and no time of as many", count),
-                   "choose columns of one length with --columns; " + lists_columns(table.path),
+                   "choose columns of one length with " + setting("columns") + "; " + lists_columns(table.path),
                    table.heading(column.index));
 }
 
-/// Throws InputError where nothing says when the rows were recorded, and they are no points.
+/// The sets of rows that hold a channel. Throws InputError where nothing says when the rows were recorded, and they are
+/// no points.
 std::vector<RowsPlan> plan_rows(const RawTable& table, const FileRecord& file, const ReadOptions& options) {
   std::vector<RowsPlan> plans;
-  for (const std::size_t rows : rows_used(table, file.columns.used)) {
-    const bool points = options.kind == RecordKind::points;
-    RowsPlan plan{rows, {}, points ? std::nullopt : stated_sampling(table, rows, options.rate), false};
-    for (const Column& column : file.columns.used) {
-      if (table.columns[column.index].rows == rows) plan.columns.used.push_back(column);
-    }
-    const bool alone = plan.columns.used.size() == file.columns.used.size();
-    plan.may_be_points =
-        !options.kind && options.second_file.empty() && !plan.sampling && alone && are_columns_of_points(plan.columns);
-    if (plan.columns.find(Channel::time) == nullptr && !plan.sampling && !points && !plan.may_be_points) {
-      refuse_without_time(table, plan.columns.used.front());
-      refuse_columns(file, "no time column");
-    }
-    plans.push_back(std::move(plan));
+  for (const Column& column : file.columns.used) {
+    const std::size_t rows = table.columns[column.index].rows;
+    auto plan = std::ranges::find(plans, rows, &RowsPlan::rows);
+    if (plan == plans.end()) plan = plans.insert(plan, {rows, {}, std::nullopt, false});
+    plan->columns.used.push_back(column);
+  }
+  const bool points = options.kind == RecordKind::points;
+  for (RowsPlan& plan : plans) {
+    if (!points) plan.sampling = stated_sampling(table, plan.rows, options.rate);
+    plan.may_be_points = !options.kind && options.second_file.empty() && !plan.sampling && plans.size() == 1 &&
+                         are_columns_of_points(plan.columns);
+    if (plan.columns.find(Channel::time) != nullptr || plan.sampling || points || plan.may_be_points) continue;
+    refuse_without_time(table, plan.columns.used.front());
+    refuse_columns(file, "no time column");
   }
   return plans;
 }
@@ -109,9 +85,8 @@ void load_columns(RawTable& table, const std::vector<Column>& used, int threads)
 std::uint64_t checksum_of(const FileRecord& run, int threads) {
   std::vector<std::uint64_t> of_channels(channel_count, 0);
   run_tasks(of_channels.size(), threads, [&](std::size_t k) {
-    const auto channel = static_cast<Channel>(k);
-    const std::vector<double>& values = run[channel];
-    if (run.has(channel))
+    const std::vector<double>& values = run[all_channels[k]];
+    if (run.has(all_channels[k]))
       of_channels[k] = xxh64({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)}, k);
   });
   return xxh64({reinterpret_cast<const char*>(of_channels.data()), of_channels.size() * sizeof(std::uint64_t)}, 0);
@@ -119,12 +94,14 @@ std::uint64_t checksum_of(const FileRecord& run, int threads) {
 
 void refuse_unusable(const RawTable& table, const Column& column, std::size_t rows) {
   const RawColumn& raw = table.columns[column.index];
-  if (raw.numbers.empty() && !raw.texts.empty()) {
-    throw InputError("holds text, not numbers", "name another column with --columns", table.heading(column.index));
+  if (raw.numbers.empty() && raw.is_text) {
+    throw InputError("holds text, not numbers", "name another column with " + setting("columns"),
+                     table.heading(column.index));
   }
   if (raw.numbers.size() != rows) {
     throw InputError(fmt::format("holds {} values where the columns beside it hold {}", raw.numbers.size(), rows),
-                     "export the trace again, or leave the column out with --columns", table.heading(column.index));
+                     "export the trace again, or leave the column out with " + setting("columns"),
+                     table.heading(column.index));
   }
 }
 
@@ -136,128 +113,31 @@ void to_si(const Column& column, std::vector<double>& values, int threads) {
   });
 }
 
-/// Whether rows, in SI, are points: by statement, or because they have no times, or none that a clock made.
-void recognise_points(const RowsPlan& plan, FileRecord& recording) {
-  const std::vector<double>& time = recording[Channel::time];
-  if (!plan.may_be_points || !(time.empty() || (time.size() <= kMostTabulated && is_no_clock(time)))) return;
-  const std::size_t rows = recording[plan.columns.used.front().channel].size();
-  if (time.empty() && rows > kMostTabulated) refuse_columns(recording, "no time column");
-  recording.kind = RecordKind::points;
-  recording.kind_source = time.empty() ? "no time column" : "the times are in no order";
-}
-
-/// Whether values go one way for nearly all of a record: a machine goes back to where it began at the end of a test.
-bool go_one_way(const std::vector<double>& values) {
-  constexpr std::size_t kLooks = 200;
-  constexpr double kNearlyAll = 0.85, kStill = 1e-3;
-  const std::size_t stride = 1 + values.size() / kLooks;
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  std::size_t on = 0, back = 0;
-  for (std::size_t i = stride; i < values.size(); i += stride) {
-    const double way = values[i] - values[i - stride];
-    on += way > kStill * (*high - *low) ? 1U : 0U;
-    back += way < -kStill * (*high - *low) ? 1U : 0U;
-  }
-  return static_cast<double>(std::max(on, back)) > kNearlyAll * static_cast<double>(on + back);
-}
-
-/// Whether a speed stays what it is but for steps, and never turns, as one that is set does.
-bool keeps_to_steps(const std::vector<double>& values) {
-  constexpr double kStays = 0.02, kLeastStep = 1.5;
-  double low = std::numeric_limits<double>::infinity(), high = 0;
-  std::size_t stays = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!(values[i] >= 0)) return false;
-    low = std::min(low, values[i]);
-    high = std::max(high, values[i]);
-    stays += i > 0 && std::abs(values[i] - values[i - 1]) <= kStays * values[i - 1] ? 1U : 0U;
-  }
-  return high > kLeastStep * low && stays >= values.size() - values.size() / 20;
-}
-
-/// A velocity of which nothing more is known is that of a load point where it keeps to steps.
-bool take_speed_of_load_point(FileRecord& recording) {
-  for (Column& column : recording.columns.used) {
-    if (!column.plain || (column.channel != Channel::v_b && column.channel != Channel::v_r)) continue;
-    if (!keeps_to_steps(recording[column.channel])) return false;
-    recording[Channel::v_lp] = std::exchange(recording[column.channel], {});
-    column.channel = Channel::v_lp;
-    return true;
-  }
-  return false;
-}
-
-/// Friction beside a load point, and no motion of the contact, is a record of velocity steps. A displacement of which
-/// nothing more is known is that of a load point where it goes one way; else it says nothing.
-void recognise_steps(FileRecord& recording) {
-  if (recording.kind || !recording.has_friction()) return;
-  Columns& columns = recording.columns;
-  const Column* displacement = columns.find(Channel::x_d);
-  const bool is_named =
-      recording.has(Channel::v_lp) || (displacement != nullptr && names_load_point(displacement->plain_name));
-  const bool is_of_contact =
-      recording.has(Channel::x_b) || std::any_of(columns.used.begin(), columns.used.end(), [](const Column& c) {
-        return (c.channel == Channel::v_b || c.channel == Channel::v_r) && !is_plain_velocity(c.plain_name);
-      });
-  const Column* force = columns.find(Channel::force);
-  const bool is_coefficient = recording.has(Channel::mu) || (force != nullptr && force->stress);
-  bool is_plain = displacement != nullptr && displacement->plain;
-  if (is_plain && !(is_coefficient && go_one_way(recording[Channel::x_d]))) {
-    is_plain = false;
-    if (!displacement->requested) {
-      recording.unused_displacement = recording.column_names[displacement->index];
-      recording[Channel::x_d].clear();
-      std::erase_if(columns.used, [](const Column& c) { return c.channel == Channel::x_d; });
-    }
-  }
-  if (is_of_contact || !(is_named || is_coefficient)) return;
-  if (is_named) {
-    recording.kind_source = "the motion of a load point was recorded";
-  } else if (is_plain) {
-    recording.kind_source = "a displacement in one direction is all the motion recorded";
-  } else if (take_speed_of_load_point(recording)) {
-    recording.kind_source = "a speed that is set in steps is all the motion recorded";
-  } else {
-    return;
-  }
-  recording.kind = RecordKind::velocity_steps;
-}
-
-/// The channels of one set of rows, in SI, on a clock that starts at 0; points are numbered instead.
-FileRecord take_rows(RawTable& table, RowsPlan plan, const FileRecord& file, int threads) {
-  FileRecord recording;
-  recording.path = file.path;
-  recording.column_names = file.column_names;
-  recording.has_names = file.has_names;
-  recording.file_conditions = file.file_conditions;
-  recording.kind = file.kind;
-  recording.kind_source = file.kind_source;
+/// Fills the recording with the channels of one set of rows, in SI, on a clock that starts at 0; points are numbered
+/// instead.
+void take_rows(RawTable& table, const RowsPlan& plan, FileRecord& recording, int threads) {
   recording.columns = plan.columns;
   recording.lines = std::move(table.rows[plan.rows].lines);
   recording.stated_steps = std::move(table.rows[plan.rows].steps);
-  const std::vector<Column>& used = recording.columns.used;
+  const std::vector<Column>& used = plan.columns.used;
   const std::size_t rows = table.columns[used.front().index].numbers.size();
   for (const Column& column : used) refuse_unusable(table, column, rows);
   const auto gappy = table.is_finite ? std::vector<std::size_t>() : find_gappy_rows(table, used, recording);
-  for (std::size_t k = 0; k < used.size(); ++k) {
-    auto& values = table.columns[used[k].index].numbers;
-    const bool again = std::any_of(used.begin() + static_cast<std::ptrdiff_t>(k) + 1, used.end(),
-                                   [&](const Column& c) { return c.index == used[k].index; });
-    recording[used[k].channel] = again ? values : std::move(values);
-    to_si(used[k], recording[used[k].channel], threads);
+  for (auto column = used.begin(); column != used.end(); ++column) {
+    auto& values = table.columns[column->index].numbers;
+    const bool again =
+        std::find_if(column + 1, used.end(), [&](const Column& c) { return c.index == column->index; }) != used.end();
+    recording[column->channel] = again ? values : std::move(values);
+    to_si(*column, recording[column->channel], threads);
   }
-  if (rows == 0) throw InputError("holds no values", "check that the export was complete", {file.path, 0, ""});
-  recognise_points(plan, recording);
+  if (rows == 0) throw InputError("holds no values", "check that the export was complete", recording.file());
+  recognise_points(plan.may_be_points, recording);
   recognise_steps(recording);
   if (!recording.has(Channel::time) && !recording.is_points()) set_time(recording, *plan.sampling);
   exclude(gappy, "with a cell that is not a number", recording);
   if (recording.is_driven()) exclude(find_repeated_rows(recording), "at the time of the row before", recording);
-  if (recording.is_points()) {
-    set_points(recording);
-    return recording;
-  }
+  if (recording.is_points()) return set_points(recording);
   set_clock(recording, plan.sampling, threads);
-  return recording;
 }
 
 }  // namespace
@@ -275,26 +155,26 @@ FileRecord read_recording(RawTable table, const std::string& path, const ReadOpt
   file.has_names = table.has_names();
   file.kind = options.kind;
   if (options.kind) file.kind_source = "stated";
-  take_messages(table, file);
-  const StatedConditions stated = stated_conditions(table.facts, table);
+  Texts notes = std::exchange(table.notes, {}), warnings = std::exchange(table.warnings, {});
+  const StatedConditions stated = conditions_in(table.facts, table);
   file.file_conditions = stated.conditions;
-  add_all(file.notes, stated.notes);
   file.columns = find_columns(table, options);
-  add_all(file.notes, file.columns.notes);
-  add_all(file.warnings, file.columns.warnings);
+  add_all(notes, stated.notes);
+  add_all(notes, file.columns.notes);
+  add_all(warnings, file.columns.warnings);
   if (file.columns.used.empty()) refuse_columns(file, "no recognisable columns");
-  std::vector<RowsPlan> plans = plan_rows(table, file, options);
+  const std::vector<RowsPlan> plans = plan_rows(table, file, options);
 
   load_columns(table, file.columns.used, options.threads);
-  take_messages(table, file);
-  std::vector<FileRecord> parts;
-  for (RowsPlan& plan : plans) parts.push_back(take_rows(table, std::move(plan), file, options.threads));
-  const auto with_friction =
-      std::find_if(parts.begin(), parts.end(), [](const FileRecord& part) { return part.has_friction(); });
+  add_all(notes, table.notes);
+  add_all(warnings, table.warnings);
+  std::vector<FileRecord> parts(plans.size(), file);
+  for (std::size_t k = 0; k < plans.size(); ++k) take_rows(table, plans[k], parts[k], options.threads);
+  const auto with_friction = std::ranges::find_if(parts, &FileRecord::has_friction);
   if (with_friction != parts.end()) std::iter_swap(parts.begin(), with_friction);
   FileRecord run = std::move(parts.front());
-  run.notes.insert(run.notes.begin(), file.notes.begin(), file.notes.end());
-  run.warnings.insert(run.warnings.begin(), file.warnings.begin(), file.warnings.end());
+  run.notes.insert(run.notes.begin(), notes.begin(), notes.end());
+  run.warnings.insert(run.warnings.begin(), warnings.begin(), warnings.end());
   for (std::size_t i = 1; i < parts.size(); ++i) join_on_one_clock(run, std::move(parts[i]));
   return run;
 }
@@ -304,75 +184,76 @@ void refuse_columns(const FileRecord& recording, const std::string& problem) {
   const std::string text =
       names ? problem + " among: " + listed(recording.column_names)
             : problem + fmt::format("; the file has no header and {} columns", recording.column_names.size());
-  std::string advice = names ? "name the columns: --columns time=NAME,mu=NAME,v_b=NAME"
-                             : "name the columns by number: --columns time=#1:s,mu=#2,v_b=#3:mm/s";
+  std::string advice = names ? "name the columns: " + setting("columns", "time=NAME,mu=NAME,v_b=NAME")
+                             : "name the columns by number: " + setting("columns", "time=#1:s,mu=#2,v_b=#3:mm/s");
   if (problem == "no time column")
-    advice += ", or give the sampling rate: --rate 20kHz; a table of steady points without time is --kind points";
+    advice += ", or give the sampling rate: " + setting("rate", "20kHz") +
+              "; a table of steady points without time is " + setting("kind", "points");
   if (problem.starts_with("no velocity") && !recording.unused_displacement.empty())
-    advice += fmt::format("; where {} is the displacement of a drive that keeps to speeds, give --kind velocity-steps",
-                          recording.unused_displacement);
-  advice += "; " + lists_columns(recording.path);
-  throw InputError(text, advice, {recording.path, 0, ""});
+    advice += fmt::format("; where {} is the displacement of a drive that keeps to speeds, give {}",
+                          recording.unused_displacement, setting("kind", "velocity-steps"));
+  throw InputError(text, advice + "; " + lists_columns(recording.path), recording.file());
 }
 
 void continue_recording(FileRecord& run, FileRecord next, std::size_t number) {
-  for (std::size_t k = 0; k < channel_count; ++k) {
-    const auto channel = static_cast<Channel>(k);
+  for (const Channel channel : all_channels) {
     if (channel == Channel::step || run.has(channel) == next.has(channel)) continue;
     throw InputError(fmt::format("has {} column for {}, unlike {}", next.has(channel) ? "a" : "no", to_string(channel),
                                  file_name(run.path)),
-                     "files of one run must have the same columns", {next.path, 0, ""});
+                     "files of one run must have the same columns", next.file());
   }
   if (run.steps.size() == 1 && run.steps.front().label.empty()) run.steps.front().label = file_name(run.path);
   const std::size_t before = run.size(), recipe = run.recipe_size();
   if (run.is_points() != next.is_points()) {
-    throw InputError("is a table of points, unlike the other file of the run, or the other way round", "state --kind",
-                     {next.path, 0, ""});
+    throw InputError("is a table of points, unlike the other file of the run, or the other way round",
+                     "state " + setting("kind"), next.file());
   }
   const double gap = next.clock_start - run.clock_end;
-  const double interval = typical_interval(run[Channel::time]);
   const bool goes_on = gap > 0 && !run.is_points();
-  const double shift = run[Channel::time].back() + (goes_on ? gap : interval);
+  const double shift = run.time.back() + (goes_on ? gap : typical_interval(run.time));
   const std::string continued = file_name(next.path);
-  run.notes.push_back(run.is_points() ? continued + " adds points"
-                      : goes_on ? fmt::format("{} continues the run after {} s", file_name(next.path), general(gap, 6))
-                                : fmt::format("{} continues the run; its clock restarts and was joined without a pause",
-                                              file_name(next.path)));
-  for (double& t : next[Channel::time]) t += shift;
+  run.notes.push_back(continued + (run.is_points() ? std::string(" adds points")
+                                   : goes_on
+                                       ? fmt::format(" continues the run after {} s", general(gap, 6))
+                                       : " continues the run; its clock restarts and was joined without a pause"));
+  for (double& t : next.time) t += shift;
   for (const Channel channel : run.present())
     run[channel].insert(run[channel].end(), next[channel].begin(), next[channel].end());
   for (std::size_t i = 0; i < next.steps.size(); ++i) {
     Step step = next.steps[i];
     step.begin += before;
     step.end += before;
-    if (step.label.empty()) step.label = file_name(next.path);
+    if (step.label.empty()) step.label = continued;
     run.steps.push_back(step);
     run.recipe_steps.push_back(recipe + next.recipe_steps[i]);
   }
   run.clock_end = goes_on ? next.clock_end : run.clock_end;
   run.checksum = xxh64(next.checksum, run.checksum);
   run.parts.push_back({before, next.path, std::move(next.lines)});
-  for (const std::string& note : next.notes) run.notes.push_back(fmt::format("file {}: {}", number, note));
-  for (const std::string& warning : next.warnings) run.warnings.push_back(fmt::format("file {}: {}", number, warning));
+  add_all(run.notes, next.notes, fmt::format("file {}: ", number));
+  add_all(run.warnings, next.warnings, fmt::format("file {}: ", number));
 }
 
 std::vector<Channel> FileRecord::present() const {
   std::vector<Channel> channels;
-  for (std::size_t k = 0; k < channel_count; ++k) {
-    if (has(static_cast<Channel>(k))) channels.push_back(static_cast<Channel>(k));
-  }
+  std::ranges::copy_if(all_channels, std::back_inserter(channels), [&](Channel channel) { return has(channel); });
   return channels;
+}
+
+std::size_t FileRecord::rows() const {
+  std::size_t rows = 0;
+  for (const Channel channel : present()) rows = std::max(rows, (*this)[channel].size());
+  return rows;
 }
 
 InputLocation FileRecord::location(std::size_t row, Channel channel) const {
   const Column* column = columns.find(channel);
   const std::string name = column != nullptr ? column->name : std::string();
-  const bool is_second = std::find(second_channels.begin(), second_channels.end(), channel) != second_channels.end();
-  if (is_second) return {second_path, 0, name};
+  if (std::ranges::find(second_channels, channel) != second_channels.end()) return {second_path, 0, name};
   row += cut_rows;
-  const auto in = [&](const std::string& file, const LineMap& map, std::size_t at) -> InputLocation {
+  const auto in = [&](const std::string& from, const LineMap& map, std::size_t at) -> InputLocation {
     const std::size_t line = map.line_of(at);
-    return {file, line, name, line > 0 ? 0 : at + 1};
+    return {from, line, name, line > 0 ? 0 : at + 1};
   };
   for (std::size_t i = parts.size(); i-- > 0;) {
     if (row >= parts[i].begin) return in(parts[i].path, parts[i].lines, row - parts[i].begin);
@@ -381,8 +262,21 @@ InputLocation FileRecord::location(std::size_t row, Channel channel) const {
 }
 
 std::string FileRecord::place_of(std::size_t row) const {
-  const InputLocation where = location(row, Channel::time);
-  return where.line > 0 ? fmt::format("line {}", where.line) : fmt::format("value {}", where.value);
+  return places_of({row});
+}
+
+std::string FileRecord::places_of(const std::vector<std::size_t>& rows) const {
+  constexpr std::size_t most_shown = 12;
+  Texts places;
+  bool has_lines = false;
+  for (const std::size_t row : rows) {
+    const InputLocation where = location(row, Channel::time);
+    has_lines = where.line > 0;
+    places.push_back(std::to_string(has_lines ? where.line : where.value));
+    if (places.size() > most_shown) break;
+  }
+  if (places.size() > most_shown) places.back() = "...";
+  return fmt::format("{}{} {}", has_lines ? "line" : "value", rows.size() == 1 ? "" : "s", listed(places));
 }
 
 }  // namespace tribofit

@@ -11,8 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "unit_spelling.hpp"
-
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -26,58 +24,55 @@ namespace {
 using Dimensions = std::array<int, 7>;
 
 struct Symbol {
-  std::string_view name;
+  std::string_view names;  // divided by blanks
   double factor;
   Dimensions dimensions;
-  std::string_view prefixes;  // those people use with it; others would only hide typing errors
+  std::string_view prefixes = {};  // those people use with it; others would only hide typing errors
 };
 
 constexpr double turn = 2 * std::numbers::pi;
 
+constexpr Dimensions length = {1, 0, 0, 0, 0, 0, 0}, duration = {0, 0, 1, 0, 0, 0, 0}, mass = {0, 1, 0, 0, 0, 0, 0},
+                     force = {1, 1, -2, 0, 0, 0, 0}, pressure = {-1, 1, -2, 0, 0, 0, 0},
+                     frequency = {0, 0, -1, 0, 0, 0, 1}, angle = {0, 0, 0, 1, 0, 0, 0},
+                     temperature = {0, 0, 0, 0, 1, 0, 0}, voltage = {0, 0, 0, 0, 0, 1, 0};
+
 constexpr std::array symbols = {
-    Symbol{"m", 1, {1, 0, 0, 0, 0, 0, 0}, "numcdk"},
-    Symbol{"micron", 1e-6, {1, 0, 0, 0, 0, 0, 0}, ""},
-    Symbol{"microns", 1e-6, {1, 0, 0, 0, 0, 0, 0}, ""},
-    Symbol{"mic", 1e-6, {1, 0, 0, 0, 0, 0, 0}, ""},  // as xlook has it
-    Symbol{"in", 0.0254, {1, 0, 0, 0, 0, 0, 0}, ""},
-    Symbol{"ft", 0.3048, {1, 0, 0, 0, 0, 0, 0}, ""},
-    Symbol{"s", 1, {0, 0, 1, 0, 0, 0, 0}, "num"},
-    Symbol{"sec", 1, {0, 0, 1, 0, 0, 0, 0}, "m"},
-    Symbol{"second", 1, {0, 0, 1, 0, 0, 0, 0}, ""},
-    Symbol{"seconds", 1, {0, 0, 1, 0, 0, 0, 0}, ""},
-    Symbol{"min", 60, {0, 0, 1, 0, 0, 0, 0}, ""},
-    Symbol{"h", 3600, {0, 0, 1, 0, 0, 0, 0}, ""},
-    Symbol{"g", 1e-3, {0, 1, 0, 0, 0, 0, 0}, "mk"},
-    Symbol{"t", 1e3, {0, 1, 0, 0, 0, 0, 0}, ""},
-    Symbol{"N", 1, {1, 1, -2, 0, 0, 0, 0}, "umkM"},
-    Symbol{"newton", 1, {1, 1, -2, 0, 0, 0, 0}, ""},
-    Symbol{"kgf", 9.80665, {1, 1, -2, 0, 0, 0, 0}, ""},
-    Symbol{"gf", 9.80665e-3, {1, 1, -2, 0, 0, 0, 0}, ""},
-    Symbol{"kp", 9.80665, {1, 1, -2, 0, 0, 0, 0}, ""},
-    Symbol{"Pa", 1, {-1, 1, -2, 0, 0, 0, 0}, "kMG"},
-    Symbol{"mpa", 1e6, {-1, 1, -2, 0, 0, 0, 0}, ""},  // of names in small letters: no stress is in millipascals
-    Symbol{"bar", 1e5, {-1, 1, -2, 0, 0, 0, 0}, "mk"},
-    Symbol{"psi", 6894.757293168, {-1, 1, -2, 0, 0, 0, 0}, ""},
-    Symbol{"lbf", 4.4482216152605, {1, 1, -2, 0, 0, 0, 0}, ""},
-    Symbol{"ozf", 0.27801385095378125, {1, 1, -2, 0, 0, 0, 0}, ""},
-    Symbol{"kip", 4448.2216152605, {1, 1, -2, 0, 0, 0, 0}, ""},
-    Symbol{"dyn", 1e-5, {1, 1, -2, 0, 0, 0, 0}, ""},
-    Symbol{"lb", 0.45359237, {0, 1, 0, 0, 0, 0, 0}, ""},
-    Symbol{"Hz", 1, {0, 0, -1, 0, 0, 0, 1}, "mkMG"},
-    Symbol{"hz", 1, {0, 0, -1, 0, 0, 0, 1}, "k"},
-    Symbol{"rad", 1, {0, 0, 0, 1, 0, 0, 0}, "um"},
-    Symbol{"deg", turn / 360, {0, 0, 0, 1, 0, 0, 0}, ""},
-    Symbol{"rev", turn, {0, 0, 0, 1, 0, 0, 0}, ""},
-    Symbol{"turn", turn, {0, 0, 0, 1, 0, 0, 0}, ""},
-    Symbol{"rpm", turn / 60, {0, 0, -1, 1, 0, 0, 0}, ""},
-    Symbol{"K", 1, {0, 0, 0, 0, 1, 0, 0}, ""},
-    Symbol{"degC", 1, {0, 0, 0, 0, 1, 0, 0}, ""},
-    Symbol{"V", 1, {0, 0, 0, 0, 0, 1, 0}, "um"},
-    Symbol{"v", 1, {0, 0, 0, 0, 0, 1, 0}, ""},
-    Symbol{"volt", 1, {0, 0, 0, 0, 0, 1, 0}, ""},
-    Symbol{"volts", 1, {0, 0, 0, 0, 0, 1, 0}, ""},
-    Symbol{"%", 1e-2, {}, ""},
-    Symbol{"1", 1, {}, ""},
+    Symbol{"m", 1, length, "numcdk"},
+    Symbol{"micron microns mic", 1e-6, length},  // the last as xlook has it
+    Symbol{"in", 0.0254, length},
+    Symbol{"ft", 0.3048, length},
+    Symbol{"s", 1, duration, "num"},
+    Symbol{"sec", 1, duration, "m"},
+    Symbol{"second seconds", 1, duration},
+    Symbol{"min", 60, duration},
+    Symbol{"h", 3600, duration},
+    Symbol{"g", 1e-3, mass, "mk"},
+    Symbol{"t", 1e3, mass},
+    Symbol{"N", 1, force, "umkM"},
+    Symbol{"newton", 1, force},
+    Symbol{"kgf kp", 9.80665, force},
+    Symbol{"gf", 9.80665e-3, force},
+    Symbol{"Pa", 1, pressure, "kMG"},
+    Symbol{"mpa", 1e6, pressure},  // of names in small letters: no stress is in millipascals
+    Symbol{"bar", 1e5, pressure, "mk"},
+    Symbol{"psi", 6894.757293168, pressure},
+    Symbol{"lbf", 4.4482216152605, force},
+    Symbol{"ozf", 0.27801385095378125, force},
+    Symbol{"kip", 4448.2216152605, force},
+    Symbol{"dyn", 1e-5, force},
+    Symbol{"lb", 0.45359237, mass},
+    Symbol{"Hz", 1, frequency, "mkMG"},
+    Symbol{"hz", 1, frequency, "k"},
+    Symbol{"rad", 1, angle, "um"},
+    Symbol{"deg", turn / 360, angle},
+    Symbol{"rev turn", turn, angle},
+    Symbol{"rpm", turn / 60, {0, 0, -1, 1, 0, 0, 0}},
+    Symbol{"K degC", 1, temperature},
+    Symbol{"V", 1, voltage, "um"},
+    Symbol{"v volt volts", 1, voltage},
+    Symbol{"%", 1e-2, {}},
+    Symbol{"1", 1, {}},
 };
 
 struct Kind {
@@ -88,27 +83,27 @@ struct Kind {
 
 constexpr std::array kinds = {
     Kind{Quantity::dimensionless, {}, "dimensionless number", "0.3 or 30 %"},
-    Kind{Quantity::time, {0, 0, 1, 0, 0, 0, 0}, "time", "0.5s or 20ms"},
-    Kind{Quantity::length, {1, 0, 0, 0, 0, 0, 0}, "length", "15mm or 0.015m"},
+    Kind{Quantity::time, duration, "time", "0.5s or 20ms"},
+    Kind{Quantity::length, length, "length", "15mm or 0.015m"},
     Kind{Quantity::velocity, {1, 0, -1, 0, 0, 0, 0}, "velocity", "6.3mm/s"},
     Kind{Quantity::angular_velocity, {0, 0, -1, 1, 0, 0, 0}, "angular velocity", "4rpm or 0.419rad/s"},
     Kind{Quantity::acceleration, {1, 0, -2, 0, 0, 0, 0}, "acceleration", "0.5m/s^2"},
-    Kind{Quantity::force, {1, 1, -2, 0, 0, 0, 0}, "force", "50N"},
+    Kind{Quantity::force, force, "force", "50N"},
     Kind{Quantity::torque, {2, 1, -2, 0, 0, 0, 0}, "torque", "2.5Nm"},
-    Kind{Quantity::mass, {0, 1, 0, 0, 0, 0, 0}, "mass", "0.1kg"},
+    Kind{Quantity::mass, mass, "mass", "0.1kg"},
     Kind{Quantity::stiffness, {0, 1, -2, 0, 0, 0, 0}, "stiffness", "12N/mm"},
     Kind{Quantity::damping, {0, 1, -1, 0, 0, 0, 0}, "damping", "3Ns/m"},
-    Kind{Quantity::frequency, {0, 0, -1, 0, 0, 0, 1}, "frequency", "20kHz"},
-    Kind{Quantity::angle, {0, 0, 0, 1, 0, 0, 0}, "angle", "90deg or 1.57rad"},
-    Kind{Quantity::temperature, {0, 0, 0, 0, 1, 0, 0}, "temperature", "23degC"},
-    Kind{Quantity::voltage, {0, 0, 0, 0, 0, 1, 0}, "voltage", "10V"},
+    Kind{Quantity::frequency, frequency, "frequency", "20kHz"},
+    Kind{Quantity::angle, angle, "angle", "90deg or 1.57rad"},
+    Kind{Quantity::temperature, temperature, "temperature", "23degC"},
+    Kind{Quantity::voltage, voltage, "voltage", "10V"},
     Kind{Quantity::inverse_velocity, {-1, 0, 1, 0, 0, 0, 0}, "inverse velocity", "0.05s/mm"},
     Kind{
         Quantity::inverse_square_of_velocity, {-2, 0, 2, 0, 0, 0, 0}, "inverse square of a velocity", "0.0001s^2/mm^2"},
     Kind{Quantity::inverse_length, {-1, 0, 0, 0, 0, 0, 0}, "inverse length", "100/mm"},
     Kind{Quantity::inverse_time, {0, 0, -1, 0, 0, 0, 0}, "inverse time", "0.001 1/s"},
     Kind{Quantity::inverse_temperature, {0, 0, 0, 0, -1, 0, 0}, "inverse temperature", "0.002 1/K"},
-    Kind{Quantity::pressure, {-1, 1, -2, 0, 0, 0, 0}, "stress", "5MPa"},
+    Kind{Quantity::pressure, pressure, "stress", "5MPa"},
 };
 
 const Kind& kind_of(Quantity quantity) {
@@ -128,13 +123,12 @@ struct Term {
 
 std::optional<Term> find_symbol(std::string_view name) {
   for (const Symbol& symbol : symbols) {
-    if (name == symbol.name) return Term{symbol.factor, symbol.dimensions};
+    if (is_among(name, symbol.names)) return Term{symbol.factor, symbol.dimensions};
   }
   for (const Symbol& symbol : symbols) {
-    if (name.size() == symbol.name.size() + 1 && name.substr(1) == symbol.name &&
-        symbol.prefixes.find(name[0]) != std::string_view::npos) {
+    const bool has_prefix = name.size() > 1 && symbol.prefixes.find(name[0]) != std::string_view::npos;
+    if (has_prefix && is_among(name.substr(1), symbol.names))
       return Term{prefix_factor(name[0]) * symbol.factor, symbol.dimensions};
-    }
   }
   return std::nullopt;
 }
@@ -219,18 +213,46 @@ class UnitParser {
       rest_.remove_prefix(1);
       return result;
     }
-    std::size_t length = 0;
-    while (length < rest_.size() &&
-           std::string_view(" /*^()-0123456789").find(rest_[length]) == std::string_view::npos) {
-      ++length;
-    }
-    const auto result = find_word(rest_.substr(0, length));
-    rest_.remove_prefix(length);
+    const std::size_t end = std::min(rest_.find_first_of(" /*^()-0123456789"), rest_.size());
+    const auto result = find_word(rest_.substr(0, end));
+    rest_.remove_prefix(end);
     return result;
   }
 
   std::string_view rest_;
 };
+
+/// Torques of drives and wrenches, in which a mass stands for the force it weighs with ("ft-lb", "kg cm").
+std::optional<std::string> torque_of_masses(std::string_view text) {
+  std::string word;
+  for (const char c : lower_case(text)) {
+    if (std::string_view(" -.*").find(c) == std::string_view::npos) word += c;
+  }
+  static constexpr std::array<std::string_view, 11> torques = {"lb*ft", "ft*lb", "lb*in", "in*lb", "oz*in", "in*oz",
+                                                               "kg*m",  "kg*cm", "kg*mm", "g*cm",  "g*mm"};
+  for (const std::string_view torque : torques) {
+    const std::size_t star = torque.find('*');
+    const std::string first(torque.substr(0, star)), second(torque.substr(star + 1));
+    const bool length_first = second == "lb" || second == "oz";
+    const std::string &weight = length_first ? second : first, &arm = length_first ? first : second;
+    for (const char* ending : {"", "f", "s"}) {
+      if (word == (length_first ? arm + weight + ending : weight + ending + arm)) return weight + "f*" + arm;
+    }
+  }
+  return std::nullopt;
+}
+
+/// One spelling for units that people write in many ways, in ASCII: "\u00b5m" is "um", "N\u00b7m" is "N*m", "ft-lb" is
+/// "lbf*ft".
+std::string usual_spelling(std::string_view text) {
+  static constexpr std::string_view spellings[][2] = {
+      {"\u00b5", "u"},   {"\u03bc", "u"},  {"\u00b7", "*"},         {"\u22c5", "*"},  {"\u00d7", "*"},
+      {"\u00b2", "^2"},  {"\u00b3", "^3"}, {"\u207b\u00b9", "^-1"}, {"\u00b9", "^1"}, {"\u2103", "degC"},
+      {"\u00b0", "deg"}, {"**", "^"},      {" per ", "/"},          {"N.m", "N*m"},   {"\u2212", "-"}};
+  std::string result(trimmed(text));
+  for (const auto& [from, to] : spellings) result = replaced(std::move(result), from, to);
+  return torque_of_masses(result).value_or(result);
+}
 
 std::optional<Unit> find_exactly(std::string_view text) {
   if (text.empty() || text == "-") return Unit{};

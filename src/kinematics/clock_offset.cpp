@@ -11,7 +11,7 @@
 
 #include "clock_scan.hpp"
 #include "force_balance.hpp"
-#include "ingest/clock.hpp"
+#include "ingest/recording.hpp"
 #include "ingest/limits.hpp"
 #include "limits.hpp"
 #include "statistics/reductions.hpp"

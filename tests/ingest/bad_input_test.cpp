@@ -60,8 +60,8 @@ TEST_F(BadInput, AHugeLineIsRefusedWithoutBeingHeld) {
 }
 
 TEST_F(BadInput, CellsAndRows) {
-  expect_error(write(table("0.3,abc,6.4\n")), {}, "'abc' is not a number", "--columns", 5, "mu");
-  expect_error(write(table("0.3,0.3x,6.4\n")), {}, "'0.3x' is not a number", "--columns", 5, "mu");
+  expect_error(write(table("0.3,abc,6.4\n")), {}, "'abc' is not a number", "columns", 5, "mu");
+  expect_error(write(table("0.3,0.3x,6.4\n")), {}, "'0.3x' is not a number", "columns", 5, "mu");
   expect_error(write(table("0.3,,6.4\n")), {}, "the cell is empty", "fill it in", 5, "mu");
   expect_error(write(table("0.3,0.33,\n")), {}, "the cell is empty", "fill it in", 5, "v_b_mm_s");
   expect_error(write(table("0.3,0.33\n")), {}, "the row has 2 cells where the file has 3 columns", "complete or remove",
@@ -82,16 +82,16 @@ TEST_F(BadInput, NumbersThatCannotBeASample) {
 }
 
 TEST_F(BadInput, Clocks) {
-  expect_error(write(table("0.2,0.33,6.4\n")), {}, "time repeats", "--rate", 5, "time_s");
+  expect_error(write(table("0.2,0.33,6.4\n")), {}, "time repeats", "rate", 5, "time_s");
   expect_error(write(table("0.1,0.33,6.4\n")), {}, "time goes backwards", "sort", 5, "time_s");
   std::string irregular = "time_s,mu,v_b_mm_s\n";
   double t = 0;
   for (int i = 0; i < 2000; ++i) irregular += fmt::format("{:.3f},0.3,6.1\n", t += i % 10 == 9 ? 0.35 : 0.1);
-  expect_error(write(irregular), {}, "the clock is irregular", "--rate", 11, "time_s");
+  expect_error(write(irregular), {}, "the clock is irregular", "rate", 11, "time_s");
 }
 
 TEST_F(BadInput, UnknownColumnsAreNamedWithThoseThatWereFound) {
-  expect_error(write("a,b,c\n1,2,3\n2,3,4\n"), {}, "no recognisable columns among: a, b, c", "--columns time=NAME");
+  expect_error(write("a,b,c\n1,2,3\n2,3,4\n"), {}, "no recognisable columns among: a, b, c", "columns time=NAME");
   expect_error(write("1,2,3\n2,3,4\n"), {}, "no recognisable columns; the file has no header and 3 columns", "time=#1");
   expect_error(write("time_s,b,v_b_mm_s\n1,2,3\n2,3,4\n"), {},
                "no friction column (mu, force or torque) among: time_s, b, v_b_mm_s", "mu=NAME");
@@ -107,12 +107,12 @@ TEST_F(BadInput, UnknownColumnsAreNamedWithThoseThatWereFound) {
 TEST_F(BadInput, Units) {
   expect_error(write("time_s,mu,v_b [mm/q]\n1,2,3\n2,3,4\n"), {}, "unknown unit 'mm/q'", "did you mean mm/s?", 1,
                "v_b [mm/q]");
-  expect_error(write("time_s,mu,v_b [N]\n1,2,3\n2,3,4\n"), {}, "unit 'N' is a force, not a velocity",
-               "--units v_b=mm/s", 1, "v_b [N]");
-  expect_error(write("time,mu,v_b\ns,,mm/q\n1,2,3\n2,3,4\n"), {}, "unknown unit 'mm/q'", "--units v_b=mm/s", 2, "v_b");
+  expect_error(write("time_s,mu,v_b [N]\n1,2,3\n2,3,4\n"), {}, "unit 'N' is a force, not a velocity", "units v_b=mm/s",
+               1, "v_b [N]");
+  expect_error(write("time,mu,v_b\ns,,mm/q\n1,2,3\n2,3,4\n"), {}, "unknown unit 'mm/q'", "units v_b=mm/s", 2, "v_b");
   expect_error(write("time,mu,v_b\ns,-,rpm\n1,2,3\n2,3,4\n"), {}, "rotational speed needs the friction radius",
-               "--radius");
-  expect_error(write("time_s,mu,v_b\n1,2,3\n2,3,4\n"), {}, "has no unit", "--units v_b=mm/s", 1, "v_b");
+               "radius");
+  expect_error(write("time_s,mu,v_b\n1,2,3\n2,3,4\n"), {}, "has no unit", "units v_b=mm/s", 1, "v_b");
   expect_error(write("time_s,mu,v_b [V]\n1,2,3\n2,3,4\n"), {}, "is in volts", "5 mm/s/V", 1, "v_b [V]");
 }
 
@@ -123,10 +123,10 @@ TEST_F(BadInput, ConditionsThatCannotBe) {
   options.conditions.radius = {0, "command line"};
   expect_error(write(table("0.3,0.33,6.4\n")), options, "radius of 0 mm", "above zero");
   expect_error(write("time_s,Ft_N,Fn_N,v_b_mm_s\n0,1,10,1\n1,1,0,1\n2,1,10,1\n"), {}, "the load is 0 N",
-               "--columns load=none", 3, "Fn_N");
+               "columns load=none", 3, "Fn_N");
   expect_error(write("time_s,torque_Nm,v_b_mm_s\n0,1,10\n1,1,2\n"), {},
-               "friction from a torque needs the friction radius", "--radius");
-  expect_error(write("time_s,mu,speed_rpm\n0,1,10\n1,1,2\n"), {}, "fixed block needs the friction radius", "--radius");
+               "friction from a torque needs the friction radius", "radius");
+  expect_error(write("time_s,mu,speed_rpm\n0,1,10\n1,1,2\n"), {}, "fixed block needs the friction radius", "radius");
   expect_error(write("time_s,mu,v_b_mm_s\n0,1,10\n"), {}, "one row only", "two samples");
 }
 
@@ -154,6 +154,14 @@ TEST_F(BadInput, APartOfTheRunGivenTwice) {
   EXPECT_THROW(read_trace(file, options), InputError);
   options.continued_in = {next, next};
   EXPECT_THROW(read_trace(file, options), InputError);
+}
+
+TEST(Settings, HaveTheNamesThatTheProgramGivesThem) {
+  EXPECT_EQ(setting("radius", "15mm"), "radius 15mm");
+  name_settings([](std::string_view key) { return "--" + std::string(key); });
+  EXPECT_EQ(setting("radius", "15mm"), "--radius 15mm");
+  EXPECT_EQ(setting("kind"), "--kind");
+  name_settings(nullptr);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "byte_cursor.hpp"
+#include "numbers.hpp"
 #include "reader.hpp"
 
 namespace tribofit {
@@ -62,9 +62,8 @@ inline std::string bytes_of(const RawTable& table) {
   for (const RawColumn& column : table.columns) {
     out.text(column.name).text(column.unit).text(column.place).number(static_cast<std::uint32_t>(column.rows));
     out.number(static_cast<std::uint8_t>(column.is_text ? 1 : 0));
-    out.number(static_cast<std::uint64_t>(column.is_text ? column.texts.size() : column.numbers.size()));
+    out.number(static_cast<std::uint64_t>(column.numbers.size()));
     for (const double value : column.numbers) out.number(value);
-    for (const std::string& value : column.texts) out.text(value);
   }
   return out.bytes();
 }
@@ -126,10 +125,8 @@ class Parser {
     result.rows = number<std::uint32_t>();
     result.is_text = number<std::uint8_t>() != 0;
     const auto count = number<std::uint64_t>();
-    bytes_.need(count, result.is_text ? 4 : 8);
-    for (std::uint64_t i = 0; i < count; ++i) {
-      result.is_text ? result.texts.push_back(text()) : result.numbers.push_back(number<double>());
-    }
+    bytes_.need(count, 8);
+    for (std::uint64_t i = 0; i < count; ++i) result.numbers.push_back(number<double>());
     return result;
   }
 

@@ -150,7 +150,7 @@ TEST_F(Columns_, ARotationalSpeedNamedAsVelocityIsMultipliedByTheRadius) {
   EXPECT_DOUBLE_EQ(trace.velocity[1], 3.1 * turn / 60 * 0.05);
   options.conditions.radius = {};
   expect_error(path("trace.csv"), options, "a velocity given as a rotational speed needs the friction radius",
-               "--radius");
+               "radius");
 }
 
 TEST_F(Columns_, OptionalChannelsComeInSi) {

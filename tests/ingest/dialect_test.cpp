@@ -124,12 +124,12 @@ TEST_F(Dialect_, ALastLineThatIsCutOffIsDroppedAndSaid) {
 
 TEST_F(Dialect_, WithoutATimeColumnTheRateGivesTheTime) {
   const std::string file = write("mu,v_b_mm_s\n0.1,1\n0.2,2\n0.3,3\n");
-  expect_error(file, {}, "no time column among: mu, v_b_mm_s", "--rate");
+  expect_error(file, {}, "no time column among: mu, v_b_mm_s", "rate");
   ReadOptions options;
   options.rate = 20000;
   EXPECT_THAT(read_trace(file, options).time, ::testing::ElementsAre(0, 5e-5, 1e-4));
   options.rate = 0;
-  expect_error(file, options, "rate must be positive", "--rate");
+  expect_error(file, options, "rate must be positive", "rate");
 }
 
 TEST_F(Dialect_, ThePreambleMayStateTheRate) {

@@ -147,7 +147,7 @@ TEST_F(MatlabFiles, StructuresMatricesScalarsAndText) {
   EXPECT_EQ(trace.velocity[7], 1e-3 * columns[2].values[7]);
   EXPECT_THAT(trace.notes, Contains(HasSubstr("not read: labels (a cell array)")));
   options.columns["mu"] = "empty";
-  expect_error(file, options, "the vector is empty", "--columns", 0, "empty");
+  expect_error(file, options, "the vector is empty", "columns", 0, "empty");
 }
 
 TEST_F(MatlabFiles, WholeNumbersOfFewBytes) {
@@ -187,7 +187,7 @@ TEST_F(MatlabFiles, VectorsOfUnequalLengthAreNamed) {
   ReadOptions options;
   options.units = {{"v_b", "mm/s"}};
   expect_error(write(files::mat5_of(columns), "run.mat"), options, "holds 150 values, and no time of as many",
-               "--columns", 0, "mu");
+               "columns", 0, "mu");
 }
 
 using UffFiles = TempFiles;

@@ -56,7 +56,7 @@ TEST_F(Gaps, WithoutATimeColumnTheOthersKeepTheirTime) {
 
 TEST_F(Gaps, MoreAreRefusedAsTheFirstIs) {
   expect_error(write(table({17, 18, 19, 20}, "NaN")), {}, "'NaN' is not a finite number", "remove the row", 19, "mu");
-  expect_error(write(table({17, 100, 200, 300, 400}, "abc")), {}, "'abc' is not a number", "--columns", 19, "mu");
+  expect_error(write(table({17, 100, 200, 300, 400}, "abc")), {}, "'abc' is not a number", "columns", 19, "mu");
 }
 
 TEST_F(Gaps, MessagesNameTheLineOfTheRowsThatRemain) {

@@ -119,7 +119,7 @@ TEST_F(LoadPoint, WhereTheKindIsStatedAnyDisplacementOrSpeedIsItsOwn) {
   const Trace stated = read_trace(write("time_s,mu\n0,0.6\n1,0.6\n2,0.6\n"), options);
   EXPECT_EQ(stated.load_point.size(), 2U);
   options.load_point.clear();
-  expect_error(write("time_s,mu\n0,0.6\n1,0.6\n2,0.6\n"), options, "of the load point", "--columns");
+  expect_error(write("time_s,mu\n0,0.6\n1,0.6\n2,0.6\n"), options, "of the load point", "columns");
 }
 
 }  // namespace

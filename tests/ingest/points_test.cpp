@@ -38,7 +38,7 @@ TEST_F(Points, AVelocityWithoutAnOwnerIsTheSlidingVelocityButThatOfABlockIsNot) 
   EXPECT_EQ(trace.velocity_kind, VelocityKind::relative);
   EXPECT_THAT(trace.velocity, ElementsAre(-0.1, 0.2));
   const std::string block = write("mu,v_b [mm/s]\n0.3,2\n0.2,4\n", "block.csv");
-  expect_error(block, {}, "no time column", "--kind points");
+  expect_error(block, {}, "no time column", "kind points");
   ReadOptions stated;
   stated.kind = RecordKind::points;
   EXPECT_THAT(read_trace(block, stated).velocity, ElementsAre(0.002, 0.004));
@@ -73,7 +73,7 @@ TEST_F(Points, ALongTableWithoutATimeIsARecordWhoseRateIsMissing) {
   std::string text = "v_r [mm/s],mu\n";
   for (int i = 0; i < 6000; ++i) text += std::to_string(5 + i % 100) + ",0.3\n";
   const std::string file = write(text);
-  expect_error(file, {}, "no time column", "--rate");
+  expect_error(file, {}, "no time column", "rate");
   ReadOptions stated;
   stated.kind = RecordKind::points;
   EXPECT_EQ(read_trace(file, stated).size(), 6000U);
@@ -88,11 +88,11 @@ TEST_F(Points, ARecordOfAJointNeedsNoRadiusAndOneOfADiscDoes) {
   const Trace trace = read_trace(write(joint));
   EXPECT_DOUBLE_EQ(trace.velocity.front(), 0.5);
   EXPECT_THAT(trace.notes, Contains(HasSubstr("lever of 1 m")));
-  expect_error(write(disc), {}, "needs the friction radius", "--radius");
+  expect_error(write(disc), {}, "needs the friction radius", "radius");
   write(joint);
   ReadOptions loaded;  // a coefficient needs the radius
   loaded.conditions.load = {50, "command line"};
-  expect_error(path("trace.csv"), loaded, "needs the friction radius", "--radius");
+  expect_error(path("trace.csv"), loaded, "needs the friction radius", "radius");
 }
 
 TEST_F(Points, AJointWithoutARadiusHasALeverOfAMetre) {

@@ -47,6 +47,7 @@ struct ChannelInfo {
   Unitless unitless;
   std::vector<double> Trace::*target;  ///< where it goes; of several channels with one target a record has one
   std::string_view names;  ///< that the field uses, divided by blanks: lower case, no separators, the usual one first
+  std::string_view plain = {};  ///< names that fit, and do not say of what the column is
 };
 
 /// The channels, in the order of Channel.
@@ -89,14 +90,24 @@ inline constexpr std::array<ChannelInfo, 16> channel_infos = {{
     {"x_d", {Quantity::length}, "mm", "m", Unitless::unknown, &Trace::drive_position,
      "xd drivedisplacement driveposition basedisplacement baseposition stagedisplacement stageposition "
      "carriagedisplacement carriageposition lpdisp lpdisplacement loadpointdisplacement loadpointdisp lpdispl "
-     "loadpointposition loadpoint xlp ramdisplacement pistondisplacement"},
+     "loadpointposition loadpoint xlp ramdisplacement pistondisplacement",
+     "displacement disp displ sheardisplacement sheardisp sheardispl axialdisplacement totaldisplacement vdcdt "
+     "verschiebung scherweg position x"},
     {"v_lp", {Quantity::velocity}, "um/s", "m/s", Unitless::unknown, &Trace::load_point_speed,
      "vlp loadpointvelocity loadpointspeed loadpointrate lpvelocity lpspeed drivevelocity drivingvelocity "
-     "ramvelocity"},
+     "ramvelocity",
+     "speed velocity v slidingvelocity slidingspeed shearvelocity slipvelocity sliprate rate"},
     {"step", {}, "", "", Unitless::number, nullptr,
      "step recipestep stepnumber segment"}}};
 // clang-format on
 inline constexpr std::size_t channel_count = channel_infos.size();
+
+/// All of them, in their order.
+inline constexpr auto all_channels = [] {
+  std::array<Channel, channel_count> all{};
+  for (std::size_t k = 0; k < all.size(); ++k) all[k] = static_cast<Channel>(k);
+  return all;
+}();
 
 constexpr std::size_t index_of(Channel channel) {
   return static_cast<std::size_t>(channel);

@@ -31,12 +31,16 @@ struct ConditionInfo {
   std::string_view name, meaning, unit;
   double si;  ///< value of one unit
   Quantity quantity;
-  const char* column;  ///< name with its unit, in CSV and JSON
+  const char* column;      ///< name with its unit, in CSV and JSON
+  std::string_view names;  ///< that files give it beside those of the channel of that name, as ChannelInfo::names
+  double most;             ///< [SI] beyond which a file states something else
 };
 inline constexpr std::array<ConditionInfo, 3> condition_infos = {
-    {{&Conditions::radius, "radius", "friction radius", "mm", kMillimetre, Quantity::length, "radius_mm"},
-     {&Conditions::speed, "speed", "speed", "rpm", kRpm, Quantity::angular_velocity, "speed_rpm"},
-     {&Conditions::load, "load", "load", "N", 1, Quantity::force, "load_N"}}};
+    {{&Conditions::radius, "radius", "friction radius", "mm", kMillimetre, Quantity::length, "radius_mm",
+      "radius r frictionradius reibradius trackradius weartrackradius disctrackradiususedforthisstep", 10},
+     {&Conditions::speed, "speed", "speed", "rpm", kRpm, Quantity::angular_velocity, "speed_rpm", "", 1e6},
+     {&Conditions::load, "load", "load", "N", 1, Quantity::force, "load_N",
+      "setforce setload appliedload appliedforce testload", 1e12}}};
 
 /// A stretch of a record in which the load point, the far end of a machine that is no stiffer than k, moves at one
 /// speed.

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace tribofit {
 
@@ -31,5 +32,13 @@ class InputError : public std::runtime_error {
   std::string problem_, advice_;
   InputLocation where_;
 };
+
+/// What may be stated beside a trace, as a message asks for it: "radius 15mm", "columns time=NAME". The keys are
+/// columns, kind, load, radius, rate, speed and units (ReadOptions).
+std::string setting(std::string_view key, std::string_view value = {});
+
+/// Sets how people state what has this key ("--radius"), for all messages: once, before anything is read. Empty: by the
+/// key itself.
+void name_settings(std::string (*name)(std::string_view key));
 
 }  // namespace tribofit

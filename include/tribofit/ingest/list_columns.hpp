@@ -21,7 +21,7 @@ struct ListedColumn {
   double lowest = 0, highest = 0;  ///< of them, as written
   std::string channel;             ///< that it is taken for; empty: none
   bool is_likely = false;          ///< `channel` is only what its name or unit suggests: it must be named
-  std::string request;             ///< what names it in --columns, "Velocity" or "#3"
+  std::string request;             ///< what names it in ReadOptions::columns, "Velocity" or "#3"
 };
 
 /// What a file holds, before any of it must make sense as a trace.
@@ -32,7 +32,7 @@ struct ColumnListing {
   std::vector<double> intervals;                           ///< [s] that the file states between values
   /// The columns that make a trace, by channel, as ReadOptions::columns takes them.
   std::map<std::string, std::string> selected;
-  std::string selection;             ///< the same as --columns takes them: "time=t,mu=COF,v_b=Velocity:mm/s"
+  std::string selection;             ///< the same in one line: "time=t,mu=COF,v_b=Velocity:mm/s"
   std::vector<std::string> assumed;  ///< units in it which the file does not state: "mm/s of v_b"
   std::vector<std::string> missing;  ///< what a trace needs and no column was found for: "friction", "velocity"
   std::vector<std::string> notes;
@@ -47,7 +47,7 @@ struct TriedColumns {
   std::string obstacle;       ///< what keeps them from it; empty where nothing does, or where some are missing
   bool needs_radius = false;  ///< of the contact, which the file does not state
 };
-/// The same, and tries the columns. Cost: one reading of the file, two where a trace is not made without a radius.
+/// The same, and tries the columns. Cost: one reading of the file.
 TriedColumns try_columns(const std::string& path, const ReadOptions& options = {});
 
 }  // namespace tribofit

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,12 +26,18 @@ constexpr bool is_driven_in_steps(std::optional<RecordKind> kind) {
   return kind == RecordKind::velocity_steps || kind == RecordKind::slide_hold_slide;
 }
 
-/// "stick-slip", "sliding", "points", "spring-slider", "motion-only", "force-only", "velocity-steps",
-/// "slide-hold-slide": as --kind and JSON have them.
-std::string_view to_string(RecordKind kind);
+/// Their names in options and JSON, in the order of RecordKind.
+inline constexpr std::array<std::string_view, 8> record_kind_texts = {"stick-slip",     "sliding",         "points",
+                                                                      "spring-slider",  "motion-only",     "force-only",
+                                                                      "velocity-steps", "slide-hold-slide"};
+
+constexpr std::string_view to_string(RecordKind kind) {
+  return record_kind_texts.at(static_cast<std::size_t>(kind));
+}
 /// The kind of exactly that name; nothing where there is none.
 std::optional<RecordKind> find_record_kind(std::string_view name);
-/// All names, in the order of RecordKind.
-std::vector<std::string> record_kind_names();
+inline std::vector<std::string> record_kind_names() {
+  return {record_kind_texts.begin(), record_kind_texts.end()};
+}
 
 }  // namespace tribofit

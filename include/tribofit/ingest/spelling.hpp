@@ -32,6 +32,12 @@ std::vector<std::string> split(std::string_view text, char separator);
 /// Whether `name` is exactly one of `names`.
 bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names);
 
+/// Which of `words`, divided by blanks, is `word`; npos: none.
+std::size_t place_among(std::string_view word, std::string_view words);
+inline bool is_among(std::string_view word, std::string_view words) {
+  return place_among(word, words) != std::string_view::npos;
+}
+
 /// "a, b, c"; of more than `most` the first ones, "and 12 more".
 std::string listed(const std::vector<std::string>& names, std::size_t most = static_cast<std::size_t>(-1));
 

@@ -1,6 +1,5 @@
 #include "dialect.hpp"
 
-#include <fast_float/fast_float.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +7,7 @@
 #include <cctype>
 #include <map>
 
+#include "cells.hpp"
 #include "encoding.hpp"
 #include "heading.hpp"
 #include "ingest/limits.hpp"
@@ -55,40 +55,15 @@ struct Form {
   char separator, decimal;
 };
 
-std::size_t most_frequent(const std::map<std::size_t, std::size_t>& count) {
+/// The most frequent of some numbers, the largest of several; 0 where there are none.
+std::size_t most_frequent(const std::vector<std::size_t>& numbers) {
+  std::map<std::size_t, std::size_t> count;
+  for (const std::size_t number : numbers) ++count[number];
   std::size_t frequent = 0, most = 0;
-  for (const auto& [n, times] : count) {
-    if (times >= most) {
-      frequent = n;
-      most = times;
-    }
+  for (const auto& [number, times] : count) {
+    if (times >= most) frequent = number, most = times;
   }
   return frequent;
-}
-
-/// The most frequent number of cells among the lines that are mostly numbers, 0 when there are none.
-std::size_t usual_cells(const std::vector<Census>& lines) {
-  std::map<std::size_t, std::size_t> count;
-  for (const Census& line : lines) {
-    if (line.mostly_numbers()) ++count[line.cells];
-  }
-  return most_frequent(count);
-}
-
-std::size_t usual_numbers(const std::vector<Census>& lines, std::size_t columns) {
-  std::map<std::size_t, std::size_t> count;
-  for (const Census& line : lines) {
-    if (line.cells == columns && line.mostly_numbers()) ++count[line.numbers];
-  }
-  return most_frequent(count);
-}
-
-bool rows_start_with_numbers(const std::vector<Census>& lines, std::size_t columns) {
-  std::ptrdiff_t with = 0;
-  for (const Census& line : lines) {
-    if (line.cells == columns && line.mostly_numbers()) with += line.starts ? 1 : -1;
-  }
-  return with > 0;
 }
 
 struct Layout {
@@ -101,6 +76,27 @@ struct Layout {
   /// "Interval,0.0005,Interval,0.0005" above four columns of numbers is not one of them, nor is "Samples,100,100".
   bool is_row(const Census& line) const {
     return line.cells == columns && line.mostly_numbers() && 2 * line.numbers > numbers && (line.starts || !starts);
+  }
+
+  /// Takes from the lines what a row is, and returns how well they fit.
+  double settle() {
+    std::vector<std::size_t> cells, of_rows;
+    for (const Census& line : lines) {
+      if (line.mostly_numbers()) cells.push_back(line.cells);
+    }
+    columns = most_frequent(cells);
+    std::ptrdiff_t starting = 0;
+    double score = 0;
+    for (const Census& line : lines) {
+      if (line.cells != columns || line.filled == 0) continue;
+      score += static_cast<double>(line.numbers * line.numbers) / static_cast<double>(line.filled);
+      if (!line.mostly_numbers()) continue;
+      of_rows.push_back(line.numbers);
+      starting += line.starts ? 1 : -1;
+    }
+    numbers = most_frequent(of_rows);
+    starts = starting > 0;
+    return score;
   }
 };
 
@@ -115,15 +111,7 @@ Layout find_layout(const std::vector<HeadLine>& lines) {
     for (const HeadLine& line : lines) {
       layout.lines.push_back(is_comment(line.text) ? Census{} : take_census(line.text, form.separator, form.decimal));
     }
-    layout.columns = usual_cells(layout.lines);
-    layout.numbers = usual_numbers(layout.lines, layout.columns);
-    layout.starts = rows_start_with_numbers(layout.lines, layout.columns);
-    double score = 0;
-    for (const Census& line : layout.lines) {
-      if (line.cells != layout.columns || line.filled == 0) continue;
-      const double numbers = static_cast<double>(line.numbers);
-      score += numbers * numbers / static_cast<double>(line.filled);
-    }
+    const double score = layout.settle();
     if (score > best_score) {
       best_score = score;
       best = std::move(layout);
@@ -136,8 +124,7 @@ Layout find_layout(const std::vector<HeadLine>& lines) {
 std::string head_of(const InputFile& file) {
   std::string head;
   for (const std::size_t most : {kHeadBytes, kLongestLine + 1}) {
-    head.assign(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), most)), '\0');
-    head.resize(file.read(0, head));
+    head = file.read_text(0, most);
     const auto lines = static_cast<std::size_t>(std::count(head.begin(), head.end(), '\n'));
     if (lines > kHeadLines || head.size() < most) break;
   }
@@ -159,9 +146,8 @@ std::string head_of(const InputFile& file) {
 /// may be a number cut in two, and one sample is a small price for not reading 0.4 where 0.4123 was meant.
 void drop_cut_off_line(const InputFile& file, std::size_t columns, Dialect& dialect) {
   const std::uint64_t size = file.size();
-  const std::size_t length = static_cast<std::size_t>(std::min<std::uint64_t>(size, kTailBytes));
-  std::string tail(length, '\0');
-  tail.resize(file.read(size - length, tail));
+  const std::uint64_t length = std::min<std::uint64_t>(size, kTailBytes);
+  const std::string tail = file.read_text(size - length, length);
   if (tail.empty() || tail.back() == '\n' || tail.back() == '\r') return;
   const std::size_t end = tail.rfind('\n');
   if (end == std::string::npos || end == 0) return;
@@ -195,9 +181,8 @@ std::vector<std::vector<std::string>> some_rows(const InputFile& file, const std
     return true;
   };
   for (std::size_t i = first; i < lines.size() && rows.size() < kRowsForBlocks; ++i) take(lines[i].text);
-  const std::uint64_t length = std::min<std::uint64_t>(file.size(), kLastRowBytes);
-  std::string tail(static_cast<std::size_t>(length), '\0');
-  tail.resize(file.read(dialect.data_end - std::min(dialect.data_end, length), tail));
+  const std::string tail =
+      file.read_text(dialect.data_end - std::min<std::uint64_t>(dialect.data_end, kLastRowBytes), kLastRowBytes);
   const auto last = split_lines(tail, tail.size());
   for (std::size_t i = last.size(); i-- > 1;) {
     if (take(last[i].text)) break;
@@ -206,46 +191,6 @@ std::vector<std::vector<std::string>> some_rows(const InputFile& file, const std
 }
 
 }  // namespace
-
-std::vector<std::string> split_cells(std::string_view line, char separator) {
-  std::vector<std::string> cells(1);
-  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
-  if (separator == blanks) line = trimmed(line);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (line[i] == '"') {
-      if (quoted && i + 1 < line.size() && line[i + 1] == '"')
-        cells.back() += line[++i];
-      else
-        quoted = !quoted;
-    } else if (separator == blanks && is_blank(line[i]) && !quoted) {
-      if (!is_blank(line[i - 1])) cells.emplace_back();
-    } else if (line[i] == separator && !quoted) {
-      cells.emplace_back();
-    } else {
-      cells.back() += line[i];
-    }
-  }
-  for (std::string& cell : cells) cell = std::string(trimmed(cell));
-  return cells;
-}
-
-std::optional<double> number_in(std::string_view cell, char decimal) {
-  if (cell.size() > 1 && cell.front() == '+' && cell[1] != '-') cell.remove_prefix(1);
-  const char *begin = cell.data(), *end = begin + cell.size();
-  for (const char mark : {decimal, '.'}) {
-    double value = 0;
-    const fast_float::parse_options form(fast_float::chars_format::general, mark);
-    const auto [last, error] = fast_float::from_chars_advanced(begin, end, value, form);
-    if (error != std::errc::invalid_argument && last == end) return value;
-  }
-  return std::nullopt;
-}
-
-bool is_number(std::string_view cell, char decimal) {
-  cell = trimmed(cell);
-  return (decimal == '.' || cell.find('.') == std::string_view::npos) && number_in(cell, decimal);
-}
 
 RawDefect too_long_line() {
   return {1, "a line is longer than 1 MB", "a trace has one row of numbers per line; check that this is a CSV file",

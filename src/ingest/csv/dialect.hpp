@@ -7,13 +7,11 @@
 #include <string_view>
 #include <vector>
 
+#include "cells.hpp"
 #include "ingest/input_file.hpp"
 #include "ingest/raw_table.hpp"
 
 namespace tribofit {
-
-/// The separator of columns that are divided by one or more blanks or tabs.
-inline constexpr char blanks = ' ';
 
 /// How a file writes its table, and where the table begins and ends.
 struct Dialect {
@@ -44,14 +42,6 @@ struct Dialect {
 /// the one above is cut off and dropped.
 /// Throws InputError for an empty file, a file that is not text, and one without rows of numbers.
 Dialect find_dialect(const InputFile& file);
-
-/// The cells of a line: quotes taken off, white space trimmed.
-std::vector<std::string> split_cells(std::string_view line, char separator);
-
-/// The number that the whole cell is, exactly rounded; nan and inf are, and a decimal point is understood in any file.
-std::optional<double> number_in(std::string_view cell, char decimal);
-/// Whether it is one with this decimal mark.
-bool is_number(std::string_view cell, char decimal);
 
 /// What is wrong with a line of more than a megabyte.
 RawDefect too_long_line();

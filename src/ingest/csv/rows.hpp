@@ -9,9 +9,14 @@
 #include "dialect.hpp"
 #include "ingest/input_file.hpp"
 #include "ingest/raw_table.hpp"
-#include "row_parser.hpp"
 
 namespace tribofit {
+
+/// A cell that is asked for in each row.
+struct WantedCell {
+  std::size_t index = 0;  ///< in the row, from 0
+  std::string column;     ///< for messages
+};
 
 /// A line of text or comment between the rows.
 struct TextLine {

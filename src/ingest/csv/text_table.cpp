@@ -17,8 +17,7 @@ namespace {
 
 std::string text_of(const InputFile& file, const TextTableRules& rules) {
   if (file.size() > rules.largest) throw InputError(rules.too_large, rules.size_advice, {file.path(), 0, ""});
-  std::string bytes(static_cast<std::size_t>(file.size()), '\0');
-  bytes.resize(file.read(0, bytes));
+  const std::string bytes = file.read_text(0, file.size());
   if (bytes.empty()) throw InputError("is empty", rules.header_advice, {file.path(), 0, ""});
   refuse_unless_text(bytes, file.path());
   return to_utf8(std::string_view(bytes).substr(byte_order_mark(bytes)), guess_encoding(bytes));
@@ -26,7 +25,7 @@ std::string text_of(const InputFile& file, const TextTableRules& rules) {
 
 char separator_of(std::string_view header) {
   char separator = ',';
-  for (const char candidate : {',', ';', '\t'}) {
+  for (const char candidate : {';', '\t'}) {
     if (std::count(header.begin(), header.end(), candidate) > std::count(header.begin(), header.end(), separator)) {
       separator = candidate;
     }
@@ -34,47 +33,18 @@ char separator_of(std::string_view header) {
   return separator;
 }
 
-RawColumn text_column(std::string name, bool named, std::size_t line) {
-  RawColumn column;
-  column.name = std::move(name);
-  column.named = named;
-  column.line = line;
-  column.is_text = true;
-  return column;
-}
-
-void add_row(std::vector<std::string> cells, std::size_t line, RawTable& table) {
-  auto& columns = table.columns;
-  const std::size_t row = columns.front().texts.size();
-  for (std::size_t k = columns.size(); k < cells.size(); ++k) {
-    if (cells[k].empty()) continue;
-    for (std::size_t i = columns.size(); i <= k; ++i) {
-      columns.push_back(text_column(fmt::format("#{}", i + 1), false, columns.front().line));
-      columns.back().texts.resize(row);
-    }
-  }
-  cells.resize(columns.size());
-  for (std::size_t k = 0; k < cells.size(); ++k) columns[k].texts.push_back(std::move(cells[k]));
-  table.rows.front().lines.set(row, line);
-}
-
 }  // namespace
 
 std::vector<std::string> TextTable::cells_of(std::size_t row) const {
-  std::vector<std::string> cells;
-  std::size_t header = 0, filled = 0;
-  for (const RawColumn& column : table.columns) {
-    cells.push_back(column.texts[row]);
-    if (column.named) header = cells.size();
-    if (!cells.back().empty()) filled = cells.size();
-  }
-  if (filled > header) {
+  std::vector<std::string> cells = rows[row].cells;
+  while (cells.size() > names.size() && cells.back().empty()) cells.pop_back();
+  if (cells.size() > names.size()) {
     throw InputError(
-        fmt::format("the row has {} cells where the header has {} columns", filled, header),
+        fmt::format("the row has {} cells where the header has {} columns", cells.size(), names.size()),
         separator == ',' ? "remove the extra cells; write numbers with a decimal point" : "remove the extra cells",
-        {table.path, line_of(row), ""});
+        {path, rows[row].line, ""});
   }
-  cells.resize(header);
+  cells.resize(names.size());
   return cells;
 }
 
@@ -84,24 +54,22 @@ std::string TextTable::with_decimal_point(const std::string& number) const {
 
 TextTable read_text_table(const std::string& path, const TextTableRules& rules) {
   const std::string text = text_of(InputFile(path), rules);
-  TextTable result;
-  RawTable& table = result.table;
+  TextTable table;
   table.path = path;
   std::size_t number = 0;
   for (const std::string& line : split(text, '\n')) {
     ++number;
     if (line.find_first_not_of(",;\t \r\"") == std::string::npos || trimmed(line).front() == '#') continue;
-    if (!table.columns.empty()) {
-      add_row(split_cells(line, result.separator), number, table);
-      continue;
-    }
-    result.separator = separator_of(line);
-    for (std::string& name : split_cells(line, result.separator)) {
-      table.columns.push_back(text_column(std::move(name), true, number));
+    if (table.names.empty()) {
+      table.separator = separator_of(line);
+      table.names = split_cells(line, table.separator);
+      table.header_line = number;
+    } else {
+      table.rows.push_back({number, split_cells(line, table.separator)});
     }
   }
-  if (table.columns.empty()) throw InputError("has no header", rules.header_advice, {path, 0, ""});
-  return result;
+  if (table.names.empty()) throw InputError("has no header", rules.header_advice, {path, 0, ""});
+  return table;
 }
 
 }  // namespace tribofit

@@ -5,18 +5,19 @@
 #include <string>
 #include <vector>
 
-#include "ingest/raw_table.hpp"
-
 namespace tribofit {
 
 /// A small table for people (a manifest, a table of values): every cell is text.
 struct TextTable {
-  RawTable table;  ///< the columns of the header, then unnamed ones for cells beyond it
+  struct Row {
+    std::size_t line = 0;
+    std::vector<std::string> cells;
+  };
+  std::string path;
+  std::vector<std::string> names;  ///< of the header
+  std::size_t header_line = 0;
+  std::vector<Row> rows;
   char separator = ',';
-
-  std::size_t rows() const { return table.columns.empty() ? 0 : table.columns.front().texts.size(); }
-  std::size_t line_of(std::size_t row) const { return table.rows.front().lines.line_of(row); }
-  std::size_t header_line() const { return table.columns.front().line; }
 
   /// The cells of a row, as many as the header has. Throws InputError where the row has more.
   std::vector<std::string> cells_of(std::size_t row) const;

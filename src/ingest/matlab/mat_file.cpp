@@ -15,7 +15,7 @@
 
 namespace tribofit {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MatArray, name, variable, fields, sizes, kind, is_text, scalar, text)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MatArray, name, sizes, kind, is_text, scalar, text)
 
 namespace {
 
@@ -95,28 +95,31 @@ class MatFile {
 
   /// All arrays, those of `variables` variables at least.
   std::vector<MatArray> describe(std::size_t variables) {
-    std::size_t number = 0;
-    for (Variable v = next(); v; v = next(), ++number) {
-      if (v->name != nullptr && *v->name != '\0') describe(*v, {v->name, number, {}, {}, {}, false, {}, {}});
-    }
+    std::vector<MatArray> arrays;
+    const std::size_t number = visit_all([&](matvar_t& v, MatArray array) {
+      if (arrays.size() == kMostMatArrays) refuse(fmt::format("holds more than {} arrays", kMostMatArrays), "");
+      describe(v, array);
+      arrays.push_back(std::move(array));
+    });
     if (number < variables) refuse(fmt::format("{} of {} variables cannot be read", variables - number, variables), "");
-    return std::move(arrays_);
+    return arrays;
   }
 
   /// Answers with the values of columns, in the order of their arrays.
   void answer(const std::vector<MatColumn>& sources, const Answers& answers) {
     auto source = sources.begin();
     std::size_t number = 0;
-    for (Variable v = next(); v && source != sources.end(); v = next(), ++number) {
-      for (; source != sources.end() && source->variable == number; ++source) {
+    visit_all([&](matvar_t& v, const MatArray&) {
+      for (; source != sources.end() && source->array == number; ++source) {
         try {
-          const std::vector<double> values = values_of(*v, *source);
+          const std::vector<double> values = values_of(v, *source);
           answers.send({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)});
         } catch (const InputError& error) {
           answers.refuse(error);
         }
       }
-    }
+      ++number;
+    });
   }
 
  private:
@@ -125,14 +128,33 @@ class MatFile {
                      {file_.path(), 0, array});
   }
 
-  Variable next() { return Variable(matio().Mat_VarReadNextInfo(mat_.get())); }
+  /// Called with an array, and with its name and sizes.
+  using Visit = std::function<void(matvar_t& v, MatArray array)>;
 
-  void describe(matvar_t& v, MatArray array) {
-    if (arrays_.size() == kMostMatArrays) refuse(fmt::format("holds more than {} arrays", kMostMatArrays), "");
+  /// Goes through the arrays, and returns the number of variables.
+  std::size_t visit_all(const Visit& visit) {
+    std::size_t number = 0;
+    for (;; ++number) {
+      const Variable v(matio().Mat_VarReadNextInfo(mat_.get()));
+      if (!v) return number;
+      if (v->name != nullptr && *v->name != '\0') visit_in(*v, v->name, 0, visit);
+    }
+  }
+
+  void visit_in(matvar_t& v, const std::string& name, std::size_t depth, const Visit& visit) {
+    MatArray array;
+    array.name = name;
     array.sizes.assign(v.dims, v.dims + std::max(0, v.rank));
     const unsigned fields = v.class_type == MAT_C_STRUCT ? matio().Mat_VarGetNumberOfFields(&v) : 0;
-    if (fields > 0 && array.elements() == 1 && array.fields.size() < kDeepestMatStructure)
-      return describe_fields(v, array, fields);
+    if (fields == 0 || array.elements() != 1 || depth >= kDeepestMatStructure) return visit(v, std::move(array));
+    char* const* names = matio().Mat_VarGetStructFieldnames(&v);
+    for (unsigned k = 0; k < fields; ++k) {
+      matvar_t* field = matio().Mat_VarGetStructFieldByIndex(&v, k, 0);
+      if (field != nullptr) visit_in(*field, name + "." + names[k], depth + 1, visit);
+    }
+  }
+
+  void describe(matvar_t& v, MatArray& array) {
     array.is_text = v.class_type == MAT_C_CHAR;
     if (is_numeric(v)) {
       count_bytes(array);
@@ -143,19 +165,6 @@ class MatFile {
     }
     const bool is_short = array.elements() > 0 && array.elements() <= (array.is_text ? kLongestMatText : 1);
     if (array.kind.empty() && is_short) take_fact(v, array);
-    arrays_.push_back(std::move(array));
-  }
-
-  void describe_fields(matvar_t& v, const MatArray& array, unsigned count) {
-    char* const* names = matio().Mat_VarGetStructFieldnames(&v);
-    for (unsigned k = 0; k < count; ++k) {
-      matvar_t* field = matio().Mat_VarGetStructFieldByIndex(&v, k, 0);
-      if (field == nullptr) continue;
-      MatArray inner = array;
-      inner.name += std::string(".") + names[k];
-      inner.fields.push_back(k);
-      describe(*field, std::move(inner));
-    }
   }
 
   bool has_data(matvar_t& v) const {
@@ -186,16 +195,11 @@ class MatFile {
     bytes_ += array.elements() * sizeof(double);
   }
 
-  std::vector<double> values_of(matvar_t& variable, const MatColumn& source) const {
-    matvar_t* v = &variable;
-    for (const unsigned field : source.fields) {
-      v = v->class_type == MAT_C_STRUCT ? matio().Mat_VarGetStructFieldByIndex(v, field, 0) : nullptr;
-      if (v == nullptr) break;
-    }
-    if (source.count == 0) throw InputError("the vector is empty", "name another one with --columns");
-    if (v == nullptr || !is_numeric(*v) || !has_data(*v)) refuse("the values cannot be read", "");
-    const NumberType& type = type_of(*v);
-    const std::string_view bytes(static_cast<const char*>(v->data), v->nbytes);
+  std::vector<double> values_of(matvar_t& v, const MatColumn& source) const {
+    if (source.count == 0) throw InputError("the vector is empty", "name another one with " + setting("columns"));
+    if (!is_numeric(v) || !has_data(v)) refuse("the values cannot be read", "");
+    const NumberType& type = type_of(v);
+    const std::string_view bytes(static_cast<const char*>(v.data), v.nbytes);
     if (bytes.size() / type.bytes <= source.first + (source.count - 1) * source.stride)
       refuse(fmt::format("the {} values of the vector are not all in the file", source.count), "");
     std::vector<double> values(source.count);
@@ -206,7 +210,6 @@ class MatFile {
 
   const InputFile& file_;
   std::unique_ptr<mat_t, decltype(&::Mat_Close)> mat_;
-  std::vector<MatArray> arrays_;
   std::uint64_t bytes_ = 0;  // of the values described so far, as doubles
 };
 

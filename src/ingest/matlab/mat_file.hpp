@@ -12,9 +12,7 @@ namespace tribofit {
 
 /// An array of a MATLAB file, or a field of a structure of one element, without its values.
 struct MatArray {
-  std::string name;  ///< "a", or "a.b" of a field
-  std::size_t variable = 0;
-  std::vector<unsigned> fields;      ///< from the variable to the array, by their numbers in each structure
+  std::string name;                  ///< "a", or "a.b" of a field
   std::vector<std::uint64_t> sizes;  ///< rows, columns, ...
   std::string kind;                  ///< what it is where it holds no real numbers ("a cell array"); else empty
   bool is_text = false;
@@ -24,10 +22,9 @@ struct MatArray {
   std::uint64_t elements() const;  ///< the largest number where they are more than that
 };
 
-/// Where the values of a column are: in an array, from an element on, every stride-th.
+/// Where the values of a column are: in an array of the file, from an element on, every stride-th.
 struct MatColumn {
-  std::size_t variable = 0;
-  std::vector<unsigned> fields;
+  std::size_t array = 0;
   std::uint64_t first = 0, stride = 1, count = 0;
 };
 

@@ -1,5 +1,3 @@
-#include "matlab_reader.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 
 #include "ingest/limits.hpp"
 #include "ingest/numbers.hpp"
+#include "ingest/reader.hpp"
 #include "mat_file.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -16,7 +15,7 @@
 namespace tribofit {
 namespace {
 
-constexpr std::size_t header_bytes = 128, version_at = 124, order_at = 126, superblock_at = 512;
+constexpr std::size_t header_bytes = 128, version_at = 124, order_at = 126;
 constexpr unsigned version_5 = 0x0100, version_73 = 0x0200;
 
 /// Rows and columns; nothing for arrays of more dimensions.
@@ -37,6 +36,7 @@ class Listing {
   explicit Listing(RawTable& table) : table_(table) {}
 
   void add(const MatArray& array) {
+    ++arrays_;
     if (!names_.insert(array.name).second) {
       skipped_.push_back(array.name + " (another array has its name)");
     } else if (array.is_text) {
@@ -80,7 +80,7 @@ class Listing {
                                : fmt::format("{}(:,{})", array.name, k + 1);
       column.count = static_cast<std::size_t>(length);
       table_.columns.push_back(std::move(column));
-      sources_.push_back({array.variable, array.fields, by_row ? k : k * rows, by_row ? rows : 1, length});
+      sources_.push_back({arrays_ - 1, by_row ? k : k * rows, by_row ? rows : 1, length});
     }
   }
 
@@ -94,6 +94,7 @@ class Listing {
   }
 
   RawTable& table_;
+  std::size_t arrays_ = 0;
   std::vector<MatColumn> sources_;
   std::set<std::string> names_;
   std::vector<std::string> skipped_;
@@ -107,39 +108,20 @@ class Listing {
 /// The number of variables of a file of version 5: elements of a type, a size and as many bytes, up to its end.
 /// libmatio ends without a word where one is damaged.
 std::size_t count_variables(const InputFile& file, bool big_endian) {
-  constexpr std::uint32_t kMatrix = 14, kCompressed = 15;
   std::size_t count = 0;
-  std::string tag(8, '\0');
+  constexpr std::size_t tag_bytes = 8;
   for (std::uint64_t at = header_bytes; at < file.size(); ++count) {
-    if (file.read(at, tag) < tag.size()) refuse_at(file, at, "the head of a variable is cut off");
+    const std::string tag = file.read_text(at, tag_bytes);
+    if (tag.size() < tag_bytes) refuse_at(file, at, "the head of a variable is cut off");
     const auto type = number_at<std::uint32_t>(tag, 0, big_endian);
     const std::uint64_t size = number_at<std::uint32_t>(tag, 4, big_endian), left = file.size() - at - tag.size();
-    if (type != kMatrix && type != kCompressed)
+    if (type != 14 && type != 15)  // a matrix, or one that is deflated
       refuse_at(file, at, fmt::format("an element of type {} where a variable begins", type));
     if (size > left) refuse_at(file, at, fmt::format("a variable of {} bytes, of which {} are there", size, left));
     if (count == kMostMatArrays) refuse_at(file, at, fmt::format("more than {} variables", kMostMatArrays));
     at += tag.size() + size;
   }
   return count;
-}
-
-/// The superblock of HDF5 (versions 0 to 3), behind MATLAB's own head, states where the file ends.
-void refuse_cut_off_hdf5(const InputFile& file) {
-  std::string bytes(64, '\0');
-  bytes.resize(file.read(superblock_at, bytes));
-  if (bytes.size() < 64 || !bytes.starts_with("\x89HDF")) refuse_at(file, superblock_at, "no HDF5 file begins here");
-  const int version = bytes[8];
-  const int bytes_of_offsets = bytes[version < 2 ? 13 : 9];
-  if (version < 0 || version > 3 || bytes_of_offsets != 8) {
-    refuse_at(file, superblock_at,
-              fmt::format("HDF5 of version {} with offsets of {} bytes", version, bytes_of_offsets));
-  }
-  const std::size_t base_at = version == 0 ? 24 : version == 1 ? 28 : 12;
-  const auto end = number_at<std::uint64_t>(bytes, base_at + 16, false);
-  const auto base = number_at<std::uint64_t>(bytes, base_at, false);
-  if (base <= file.size() && end <= file.size()) return;
-  throw InputError(fmt::format("is cut off at byte {}: it states {} bytes", file.size(), end),
-                   "copy or save the file again", {file.path(), 0, ""});
 }
 
 /// The header's version, and whether numbers begin with their highest byte.
@@ -152,8 +134,7 @@ unsigned version_of(std::string_view header) {
 
 /// The number of variables that a whole file has at least. Throws InputError for one that is not whole.
 std::size_t check_whole(const InputFile& file) {
-  std::string header(header_bytes, '\0');
-  header.resize(file.read(0, header));
+  const std::string header = file.read_text(0, header_bytes);
   if (header.size() < header_bytes) {
     throw InputError(fmt::format("is cut off at byte {}, in its head", header.size()), "copy or save the file again",
                      {file.path(), 0, ""});
@@ -165,8 +146,7 @@ std::size_t check_whole(const InputFile& file) {
         fmt::format("byte {}: is of version {:#06x} of MATLAB's format, which is not known", version_at, version),
         "save it with save(..., '-v7')", {file.path(), 0, ""});
   }
-  refuse_cut_off_hdf5(file);
-  return 0;
+  return 1;  // HDF5 opens no file that is not whole, and libmatio then finds no variable in it
 }
 
 RawTable read_matlab(std::shared_ptr<const InputFile> file) {
@@ -203,6 +183,10 @@ bool is_matlab(std::string_view head) {
 
 }  // namespace
 
+/// MATLAB's files of version 5 to 7 and 7.3, by libmatio. Every numeric vector, row or column, is a column; those of a
+/// matrix are columns "a(:,1)", those of a structure "a.b". Vectors of one length share rows. Scalars and lines of text
+/// are facts: fs and dt give the sampling where no vector holds the time. Cells, objects, complex and sparse arrays are
+/// named and not read.
 const Reader matlab_reader = {"MATLAB", is_matlab, read_matlab};
 
 }  // namespace tribofit

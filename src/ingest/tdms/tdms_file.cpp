@@ -10,9 +10,8 @@
 #include <optional>
 #include <utility>
 
-#include "active_objects.hpp"
-#include "ingest/byte_cursor.hpp"
 #include "ingest/limits.hpp"
+#include "ingest/numbers.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {
@@ -58,6 +57,20 @@ constexpr std::size_t lead_bytes = 28;
 constexpr std::uint32_t no_values = 0xFFFFFFFF, as_before = 0;
 constexpr std::array<std::uint32_t, 2> daqmx_index = {0x1269, 0x126A};
 
+/// Values of an object in each chunk of a segment.
+struct Index {
+  std::uint32_t type = 0;
+  std::uint64_t count = 0, bytes = 0;
+};
+
+/// What is known of an object while the segments are gone through.
+struct State {
+  Index stated;                        // the last one
+  Index listed;                        // by which its values stand in the segment
+  std::optional<std::uint64_t> place;  // in the segment's list; nothing: it is not in it
+  std::map<std::string, std::size_t> properties;
+};
+
 class Parser {
  public:
   Parser(const InputFile& file, std::vector<std::string>& notes) : file_(file), notes_(notes) {}
@@ -73,20 +86,23 @@ class Parser {
                      advice != nullptr ? advice : "the file is cut off or damaged; copy or export it again",
                      {file_.path(), 0, ""});
   }
+  [[noreturn]] void refuse_daqmx(std::uint64_t at, const std::string& path) const {
+    refuse(at, fmt::format("the values of {} are raw ones of DAQmx, which need its scaling", path),
+           "export the channel scaled, as a TDMS file of doubles or as CSV");
+  }
 
   /// Reads a segment and returns where the next one begins.
   std::uint64_t segment(std::uint64_t begin) {
-    std::array<char, lead_bytes> lead;
-    const std::string_view view(lead.data(), lead.size());
-    if (file_.read(begin, lead) < lead_bytes) refuse(begin, "the head of a segment is cut off");
-    if (!view.starts_with("TDSm")) refuse(begin, "no segment begins here");
-    mask_ = number_at<std::uint32_t>(view, 4, false);
+    const std::string lead = file_.read_text(begin, lead_bytes);
+    if (lead.size() < lead_bytes) refuse(begin, "the head of a segment is cut off");
+    if (!lead.starts_with("TDSm")) refuse(begin, "no segment begins here");
+    mask_ = number_at<std::uint32_t>(lead, 4, false);
     big_endian_ = (mask_ & contents::big_endian) != 0;
-    const auto version = number_at<std::uint32_t>(view, 8, big_endian_);
+    const auto version = number_at<std::uint32_t>(lead, 8, big_endian_);
     if (version != 4712 && version != 4713)
       refuse(begin + 8, fmt::format("version {} of the format is not known", version));
-    const auto length = number_at<std::uint64_t>(view, 12, big_endian_),
-               raw = number_at<std::uint64_t>(view, 20, big_endian_);
+    const auto length = number_at<std::uint64_t>(lead, 12, big_endian_);
+    const auto raw = number_at<std::uint64_t>(lead, 20, big_endian_);
     const std::uint64_t left = file_.size() - begin - lead_bytes;
     unfinished_ = length == std::numeric_limits<std::uint64_t>::max();
     if (unfinished_)
@@ -104,13 +120,14 @@ class Parser {
   }
 
   void metadata(std::uint64_t begin, std::uint64_t size) {
-    std::string bytes(static_cast<std::size_t>(size), '\0');
-    bytes.resize(file_.read(begin, bytes));
     begin_ = begin;
-    described_.emplace(std::move(bytes), [this](std::uint64_t wanted, std::uint64_t there) {
+    described_.emplace(file_.read_text(begin, size), [this](std::uint64_t wanted, std::uint64_t there) {
       refuse(at(), fmt::format("{} bytes are wanted where {} are left", wanted, there));
     });
-    if ((mask_ & contents::new_list) != 0) active_.clear();
+    if ((mask_ & contents::new_list) != 0) {
+      for (const std::size_t k : list_) take_off_list(k);
+      list_.clear();
+    }
     for (auto count = number<std::uint32_t>(); count > 0; --count) object();
   }
 
@@ -130,50 +147,70 @@ class Parser {
       if (objects_.size() == kMostTdmsObjects)
         refuse(at(), fmt::format("more than {} groups and channels", kMostTdmsObjects), "export fewer channels");
       objects_.push_back({path, names_of(path), 0, 0, {}, {}});
-      indices_.emplace_back();
+      states_.emplace_back();
     }
     const std::uint64_t index_at = at();
     const auto index = number<std::uint32_t>();
-    if (std::find(daqmx_index.begin(), daqmx_index.end(), index) != daqmx_index.end())
-      refuse_daqmx(index_at, objects_[k]);
-    if (index != no_values && index != as_before) read_index(index_at, k);
+    if (std::ranges::find(daqmx_index, index) != daqmx_index.end()) refuse_daqmx(index_at, path);
+    if (index != no_values && index != as_before) states_[k].stated = read_index(index_at, objects_[k]);
     if (index == no_values) {
-      active_.remove(k);
+      take_off_list(k);
     } else {
-      active_.put(k, indices_[k]);
+      put_on_list(k);
     }
     for (auto count = number<std::uint32_t>(); count > 0; --count) property(k);
   }
 
-  [[noreturn]] void refuse_daqmx(std::uint64_t at, const TdmsObject& object) const {
-    refuse(at, fmt::format("the values of {} are raw ones of DAQmx, which need its scaling", object.path),
-           "export the channel scaled, as a TDMS file of doubles or as CSV");
+  void put_on_list(std::size_t k) {
+    if (!states_[k].place) {
+      states_[k].place = next_place_++;
+      list_.push_back(k);
+    }
+    set_listed(k, states_[k].stated);
+  }
+  void take_off_list(std::size_t k) {
+    set_listed(k, {});
+    states_[k].place.reset();
+  }
+  /// Those of no bytes are left out, or a file of many objects and many segments would cost their product.
+  void set_listed(std::size_t k, const Index& index) {
+    State& state = states_[k];
+    if (!state.place) return;
+    const auto sample = [](const Index& i) { return i.bytes > 0 ? tdms::bytes_of(i.type) : 0; };
+    chunk_ += index.bytes - state.listed.bytes;
+    sample_ += sample(index) - sample(state.listed);
+    state.listed = index;
+    if (index.bytes > 0) {
+      with_values_.emplace(*state.place, k);
+    } else {
+      with_values_.erase(*state.place);
+    }
   }
 
-  void read_index(std::uint64_t index_at, std::size_t k) {
-    TdmsIndex& index = indices_[k];
+  Index read_index(std::uint64_t index_at, TdmsObject& object) {
+    Index index;
     index.type = number<std::uint32_t>();
     const auto dimensions = number<std::uint32_t>();
     index.count = number<std::uint64_t>();
-    if (index.type == 0xFFFFFFFF) refuse_daqmx(index_at, objects_[k]);
-    if (dimensions != 1) refuse(index_at, fmt::format("{} is of {} dimensions, not one", objects_[k].path, dimensions));
+    if (index.type == no_values) refuse_daqmx(index_at, object.path);
+    if (dimensions != 1) refuse(index_at, fmt::format("{} is of {} dimensions, not one", object.path, dimensions));
     const std::size_t size = tdms::bytes_of(index.type);
     if (index.type == tdms::text) {
       index.bytes = number<std::uint64_t>();
     } else if (size == 0) {
-      refuse(index_at, fmt::format("{} is of the type {:#x}, which is not read", objects_[k].path, index.type));
+      refuse(index_at, fmt::format("{} is of the type {:#x}, which is not read", object.path, index.type));
     } else if (index.count > file_.size() && !unfinished_) {
-      refuse(index_at,
-             fmt::format("{} values of {} in a file of {} bytes", index.count, objects_[k].path, file_.size()));
+      refuse(index_at, fmt::format("{} values of {} in a file of {} bytes", index.count, object.path, file_.size()));
     } else {
       index.bytes = std::min(index.count, file_.size() + 1) * size;
     }
     if (index.bytes > file_.size() && !unfinished_)
-      refuse(index_at, fmt::format("{} holds {} bytes, more than the file", objects_[k].path, index.bytes));
+      refuse(index_at, fmt::format("{} holds {} bytes, more than the file", object.path, index.bytes));
     index.bytes = std::min(index.bytes, file_.size() + 1);  // of which no whole chunk can be there
-    const bool changes = objects_[k].count > 0 && objects_[k].type != index.type;
-    if (changes) refuse(index_at, fmt::format("the type of {} changes", objects_[k].path));
-    objects_[k].type = index.type;
+    if (object.count > 0 && object.type != index.type)
+      refuse(index_at, fmt::format("the type of {} changes", object.path));
+    object.type = index.type;
+    return index;
   }
 
   void property(std::size_t k) {
@@ -182,25 +219,24 @@ class Parser {
     property.name = text();
     const std::uint64_t type_at = at();
     const auto type = number<std::uint32_t>();
+    const std::size_t size = tdms::bytes_of(type);
     property.is_text = type == tdms::text;
     if (property.is_text) {
       property.text = text();
+    } else if (size == 0) {
+      refuse(type_at, fmt::format("the property {} is of the type {:#x}, which is not known", property.name, type));
     } else {
-      const std::size_t size = tdms::bytes_of(type);
-      if (size == 0)
-        refuse(type_at, fmt::format("the property {} is of the type {:#x}, which is not known", property.name, type));
       described_->need(1, size);
       property.number = tdms::value_at(described_->bytes(), described_->position(), type, big_endian_, 0);
       described_->skip(size);
     }
-    const auto [known, is_new] = property_of_.emplace(std::pair(k, property.name), object.properties.size());
+    const auto [known, is_new] = states_[k].properties.emplace(property.name, object.properties.size());
     if (!is_new) {
       object.properties[known->second] = std::move(property);
       return;
     }
-    if (object.properties.size() >= kMostTdmsProperties) {
+    if (object.properties.size() >= kMostTdmsProperties)
       refuse(type_at, fmt::format("more than {} properties of {}", kMostTdmsProperties, object.path));
-    }
     object.properties.push_back(std::move(property));
   }
 
@@ -220,39 +256,40 @@ class Parser {
     return names;
   }
 
-  /// Notes where the values of a segment are: chunks of the same build, as many as it holds.
+  /// Notes where the values of a segment are: chunks of the same build, as many as it holds; one chunk of samples of
+  /// all channels where they are interleaved.
   void values(std::uint64_t begin, std::uint64_t size) {
     if ((mask_ & contents::daqmx) != 0)
       refuse(begin, "raw values of DAQmx, which need its scaling",
              "export the channels scaled, as a TDMS file of doubles or as CSV");
-    const std::uint64_t chunk = active_.chunk_bytes();
-    if (chunk == 0 || size == 0) return;
-    if ((mask_ & contents::interleaved) != 0) return interleaved(begin, size);
-    if (unfinished_) size -= size % chunk;
-    if (size % chunk != 0) refuse(begin, fmt::format("{} bytes of values in chunks of {}", size, chunk));
+    if (chunk_ == 0 || size == 0) return;
+    const bool interleaved = (mask_ & contents::interleaved) != 0;
+    if (interleaved) refuse_unlike(begin);
+    const std::uint64_t part = interleaved ? sample_ : chunk_;
+    if (unfinished_) size -= size % part;
+    if (size % part != 0)
+      refuse(begin, fmt::format("{} bytes of values in {} of {}", size, interleaved ? "samples" : "chunks", part));
     if (size == 0) return;
     std::uint64_t at = begin;
-    for (const auto& [place, k] : active_.with_values()) {
-      const std::size_t bytes = tdms::bytes_of(indices_[k].type);
-      if (bytes > 0) add({at, indices_[k].count, bytes, size / chunk, chunk, big_endian_}, objects_[k]);
-      at += indices_[k].bytes;
+    for (const auto& [place, k] : with_values_) {
+      const Index& index = states_[k].listed;
+      const std::size_t bytes = tdms::bytes_of(index.type);
+      if (interleaved) {
+        add({at, size / part, part, 1, 0, big_endian_}, objects_[k]);
+      } else if (bytes > 0) {
+        add({at, index.count, bytes, size / part, part, big_endian_}, objects_[k]);
+      }
+      at += interleaved ? bytes : index.bytes;
     }
   }
 
-  void interleaved(std::uint64_t begin, std::uint64_t size) {
-    const auto& channels = active_.with_values();
-    for (const auto& [place, k] : channels) {
-      if (indices_[k].type == tdms::text || indices_[k].count != indices_[channels.begin()->second].count) {
+  /// Throws InputError for channels that cannot be interleaved.
+  void refuse_unlike(std::uint64_t begin) const {
+    const Index& first = states_[with_values_.begin()->second].listed;
+    for (const auto& [place, k] : with_values_) {
+      const Index& index = states_[k].listed;
+      if (index.type == tdms::text || index.count != first.count)
         refuse(begin, fmt::format("{} cannot be interleaved with the other channels", objects_[k].path));
-      }
-    }
-    const std::uint64_t sample = active_.sample_bytes();
-    if (unfinished_) size -= size % sample;
-    if (size % sample != 0) refuse(begin, fmt::format("{} bytes of values in samples of {}", size, sample));
-    std::uint64_t at = begin;
-    for (const auto& [place, k] : channels) {
-      if (size > 0) add({at, size / sample, sample, 1, 0, big_endian_}, objects_[k]);
-      at += tdms::bytes_of(indices_[k].type);
     }
   }
 
@@ -293,18 +330,19 @@ class Parser {
   std::optional<ByteCursor> described_;           // a copy of what describes the objects of a segment
   std::uint64_t begin_ = 0;                       // of it, in the file
   std::vector<TdmsObject> objects_;
-  std::vector<TdmsIndex> indices_;                                          // of each object, the last one stated
-  std::map<std::string, std::size_t> object_of_;                            // path
-  std::map<std::pair<std::size_t, std::string>, std::size_t> property_of_;  // object and name
-  ActiveTdmsObjects active_;
-  std::size_t pieces_ = 0;  // of all objects
+  std::vector<State> states_;                         // of the objects
+  std::map<std::string, std::size_t> object_of_;      // path
+  std::vector<std::size_t> list_;                     // objects that were put on the list of the segment
+  std::map<std::uint64_t, std::size_t> with_values_;  // those with values in it: place, object
+  std::uint64_t next_place_ = 0;
+  std::uint64_t chunk_ = 0, sample_ = 0;  // bytes of a chunk, and of one value of each
+  std::size_t pieces_ = 0;                // of all objects
 };
 
 }  // namespace
 
 const TdmsProperty* TdmsObject::find(std::string_view name) const {
-  const auto at =
-      std::find_if(properties.begin(), properties.end(), [&](const TdmsProperty& p) { return p.name == name; });
+  const auto at = std::ranges::find(properties, name, &TdmsProperty::name);
   return at != properties.end() ? &*at : nullptr;
 }
 

@@ -1,5 +1,3 @@
-#include "tdms_reader.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <utility>
 
 #include "ingest/limits.hpp"
+#include "ingest/reader.hpp"
 #include "tdms_file.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -92,7 +91,8 @@ void load_channels(const InputFile& file, const Objects& channels, RawTable& tab
     RawColumn& column = table.columns[index];
     if (!column.numbers.empty()) continue;
     if (column.is_text) {
-      column.refusal.emplace("holds text, not numbers", "name another column with --columns", table.heading(index));
+      column.refusal.emplace("holds text, not numbers", "name another column with " + setting("columns"),
+                             table.heading(index));
       continue;
     }
     if (is_unscaled(object)) {
@@ -154,6 +154,11 @@ bool is_tdms(std::string_view head) {
 
 }  // namespace
 
+/// NI's TDMS: channels of numbers or times, of either order of bytes, contiguous or interleaved, in any number of
+/// segments. Channels of one length and sampling share rows; wf_increment gives the sampling, unit_string the unit. The
+/// properties of the file and its groups are facts. Raw values of DAQmx, which are to be scaled, are refused.
+///
+/// After "TDMS File Format Internal Structure" (NI).
 const Reader tdms_reader = {"TDMS", is_tdms, read_tdms};
 
 }  // namespace tribofit

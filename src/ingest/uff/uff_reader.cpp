@@ -1,5 +1,3 @@
-#include "uff_reader.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +12,7 @@
 #include "ingest/content_hash.hpp"
 #include "ingest/limits.hpp"
 #include "ingest/numbers.hpp"
+#include "ingest/reader.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/output/digits.hpp"
@@ -23,28 +22,36 @@ namespace {
 
 constexpr std::size_t header_lines = 11;
 
-/// What the abscissa is, by its number in the eighth line; 0 and 1 leave it open.
-namespace abscissa_type {
-constexpr int unknown = 0, general = 1, time = 17, frequency = 18;
-}
+/// The abscissa by its number in the eighth line; 0 and 1 leave it open.
+constexpr int unknown_abscissa = 0, general_abscissa = 1, time_abscissa = 17;
 
 /// What a function depends on where that is not the time; empty where it is, or where it may be.
 std::string other_abscissa(int type, const std::string& unit) {
-  static const std::map<int, const char*> names = {
-      {2, "stress"},         {3, "strain"},    {5, "temperature"},   {6, "heat flux"},         {8, "displacement"},
-      {9, "reaction force"}, {11, "velocity"}, {12, "acceleration"}, {13, "excitation force"}, {15, "pressure"},
-      {16, "mass"},          {19, "rpm"},      {20, "order"},        {21, "sound pressure"},   {22, "sound intensity"},
-      {23, "sound power"}};
-  if (type == abscissa_type::frequency) return "frequency";
-  const bool is_open = type == abscissa_type::unknown || type == abscissa_type::general;
-  if (!is_open && type != abscissa_type::time) {
+  static const std::map<int, const char*> names = {{2, "stress"},
+                                                   {3, "strain"},
+                                                   {5, "temperature"},
+                                                   {6, "heat flux"},
+                                                   {8, "displacement"},
+                                                   {9, "reaction force"},
+                                                   {11, "velocity"},
+                                                   {12, "acceleration"},
+                                                   {13, "excitation force"},
+                                                   {15, "pressure"},
+                                                   {16, "mass"},
+                                                   {18, "frequency"},
+                                                   {19, "rpm"},
+                                                   {20, "order"},
+                                                   {21, "sound pressure"},
+                                                   {22, "sound intensity"},
+                                                   {23, "sound power"}};
+  const bool is_open = type == unknown_abscissa || type == general_abscissa;
+  if (!is_open && type != time_abscissa) {
     const auto name = names.find(type);
     return name != names.end() ? name->second : fmt::format("an abscissa of type {}", type);
   }
   const auto known = find_unit(unit);
   if (unit.empty() || !known || find_unit(unit, Quantity::time)) return "";
-  if (known->quantity == Quantity::frequency) return "frequency";
-  return is_open ? std::string(to_string(known->quantity)) : "";
+  return is_open || known->quantity == Quantity::frequency ? std::string(to_string(known->quantity)) : "";
 }
 
 bool is_mark(std::string_view line) {
@@ -62,8 +69,11 @@ std::string label(std::string_view text) {
   return lower_case(result) == "none" ? std::string() : result;
 }
 
-/// The eleven lines above the values.
+/// A dataset of values: "    58b     1     2          11      317168 ..." and the eleven lines above the values.
 struct Function {
+  bool binary = false, big_endian = false;
+  int format = 2;           // of floating point numbers: 2 is IEEE 754
+  std::uint64_t bytes = 0;  // of the values
   std::string title, response;
   int type = 2;  // of the values: 2 and 4 real, 5 and 6 complex; 4 and 6 of double precision
   std::uint64_t count = 0;
@@ -76,39 +86,30 @@ struct Function {
   bool is_double() const { return type == 4 || type == 6; }
 };
 
-/// The head of a dataset: "    58" or "    58b     1     2          11      317168 ...".
-struct DatasetHead {
-  int number = 0;
-  bool binary = false, big_endian = false;
-  int format = 2;  // of floating point numbers: 2 is IEEE 754
-  std::uint64_t lines = header_lines, bytes = 0;
-};
-
 class File {
  public:
   File(const InputFile& file, RawTable& table) : path_(file.path()), table_(table) {
-    bytes_.resize(static_cast<std::size_t>(file.size()));
-    bytes_.resize(file.read(0, bytes_));
+    bytes_ = file.read_text(0, file.size());
   }
 
   void read() {
     while (find_mark()) {
       dataset_at_ = at_;
       const std::string_view head = line();
-      const DatasetHead kind = kind_of(head);
       ++datasets_;
-      if (kind.number == 58) {
-        read_function(kind);
+      if (number<int>(field(head, 0, 6), "the number of the dataset") == 58) {
+        read_function(head);
       } else {
         ++others_;
       }
-      skip_to_end();
+      find_mark();
     }
     if (others_ > 0)
       skipped_.push_back(fmt::format("{} dataset{} of another number", others_, others_ == 1 ? "" : "s"));
-    if (!skipped_.empty()) table_.notes.push_back("not read: " + listed(skipped_, kMostNamed));
+    const std::string skipped = listed(skipped_, kMostNamed);
+    if (!skipped.empty()) table_.notes.push_back("not read: " + skipped);
     if (!table_.columns.empty()) return;
-    throw InputError("holds no real function of time" + (skipped_.empty() ? "" : ": " + listed(skipped_, kMostNamed)),
+    throw InputError("holds no real function of time" + (skipped.empty() ? "" : ": " + skipped),
                      "export the time histories as dataset 58", {path_, 0, ""});
   }
 
@@ -126,18 +127,12 @@ class File {
     return text;
   }
 
-  /// Goes behind the mark that begins a dataset; false at the end of the file.
+  /// Goes behind the next mark, which begins or ends a dataset; false at the end of the file.
   bool find_mark() {
     while (at_ < bytes_.size()) {
       if (is_mark(line())) return at_ < bytes_.size();
     }
     return false;
-  }
-
-  void skip_to_end() {
-    while (at_ < bytes_.size()) {
-      if (is_mark(line())) return;
-    }
   }
 
   template <class Number>
@@ -152,20 +147,16 @@ class File {
     return value;
   }
 
-  DatasetHead kind_of(std::string_view head) const {
-    DatasetHead kind;
-    kind.number = number<int>(field(head, 0, 6), "the number of the dataset");
-    kind.binary = head.size() > 6 && lower_case(head.substr(6, 1)) == "b";
-    if (kind.number != 58 || !kind.binary) return kind;
-    kind.big_endian = number<int>(field(head, 7, 6), "the order of bytes") == 2;
-    kind.format = number<int>(field(head, 13, 6), "the format of numbers");
-    kind.lines = number<std::uint64_t>(field(head, 19, 12), "the number of lines");
-    kind.bytes = number<std::uint64_t>(field(head, 31, 12), "the number of bytes");
-    return kind;
-  }
-
-  Function header() {
+  Function header(std::string_view head) {
     Function f;
+    f.binary = head.size() > 6 && lower_case(head.substr(6, 1)) == "b";
+    std::uint64_t lines_above = header_lines;
+    if (f.binary) {
+      f.big_endian = number<int>(field(head, 7, 6), "the order of bytes") == 2;
+      f.format = number<int>(field(head, 13, 6), "the format of numbers");
+      lines_above = number<std::uint64_t>(field(head, 19, 12), "the number of lines");
+      f.bytes = number<std::uint64_t>(field(head, 31, 12), "the number of bytes");
+    }
     std::vector<std::string_view> lines;
     for (std::size_t i = 0; i < header_lines; ++i) {
       if (at_ >= bytes_.size()) refuse("the lines above the values are cut off");
@@ -185,16 +176,16 @@ class File {
     const std::string below = label(field(lines[9], 47, 20));
     if (!below.empty()) f.unit = (f.unit.empty() ? "1" : f.unit) + "/(" + below + ")";
     if (f.type != 2 && f.type != 4 && !f.is_complex()) refuse(fmt::format("values of type {}", f.type));
+    if (lines_above != header_lines)
+      refuse(fmt::format("{} lines above the values, not {}", lines_above, header_lines));
+    if (f.bytes > bytes_.size() - at_)
+      refuse(fmt::format("{} bytes of values, of which {} are there", f.bytes, bytes_.size() - at_));
     return f;
   }
 
-  void read_function(const DatasetHead& kind) {
-    const Function f = header();
-    if (kind.lines != header_lines) refuse(fmt::format("{} lines above the values, not {}", kind.lines, header_lines));
+  void read_function(std::string_view head) {
+    const Function f = header(head);
     const std::string depends_on = other_abscissa(f.abscissa, f.abscissa_unit);
-    if (kind.binary && kind.bytes > bytes_.size() - at_) {
-      refuse(fmt::format("{} bytes of values, of which {} are there", kind.bytes, bytes_.size() - at_));
-    }
     const std::string why = f.is_complex()              ? "complex"
                             : depends_on == "frequency" ? "a spectrum"
                             : !depends_on.empty()       ? "a function of " + depends_on + ", not of time"
@@ -202,38 +193,37 @@ class File {
                                                         : "";
     if (!why.empty()) {
       skipped_.push_back(fmt::format("'{}' ({})", f.title, why));
-      at_ += kind.binary ? static_cast<std::size_t>(kind.bytes) : 0;
+      at_ += static_cast<std::size_t>(f.bytes);
       return;
     }
-    if (kind.format != 2) refuse(fmt::format("numbers of format {}, not IEEE 754", kind.format));
+    if (f.format != 2) refuse(fmt::format("numbers of format {}, not IEEE 754", f.format));
     if (f.count > bytes_.size()) refuse(fmt::format("{} values in a file of {} bytes", f.count, bytes_.size()));
     if (f.even && !(f.interval > 0 && std::isfinite(f.interval) && std::isfinite(f.start))) {
       refuse(fmt::format("an increment of {}", general(f.interval)));
     }
     std::vector<double> abscissa, ordinate;
-    kind.binary ? binary_values(kind, f, abscissa, ordinate) : text_values(f, abscissa, ordinate);
+    f.binary ? binary_values(f, abscissa, ordinate) : text_values(f, abscissa, ordinate);
     add(f, std::move(abscissa), std::move(ordinate));
   }
 
-  void binary_values(const DatasetHead& kind, const Function& f, std::vector<double>& abscissa,
-                     std::vector<double>& ordinate) {
+  void binary_values(const Function& f, std::vector<double>& abscissa, std::vector<double>& ordinate) {
     const std::size_t size = f.is_double() ? 8 : 4;
-    const bool wide = f.is_double() && kind.bytes >= f.count * 16;  // writers differ in the precision of the abscissa
+    const bool wide = f.is_double() && f.bytes >= f.count * 16;  // writers differ in the precision of the abscissa
     const std::size_t before = f.even ? 0 : wide ? 8 : 4;
-    if (kind.bytes / (before + size) < f.count) {
-      refuse(fmt::format("{} values in {} bytes", f.count, kind.bytes));
+    if (f.bytes / (before + size) < f.count) {
+      refuse(fmt::format("{} values in {} bytes", f.count, f.bytes));
     }
     const std::string_view view(bytes_);
     const auto value = [&](std::size_t at, std::size_t width) {
-      return width == 8 ? number_at<double>(view, at, kind.big_endian)
-                        : static_cast<double>(number_at<float>(view, at, kind.big_endian));
+      return width == 8 ? number_at<double>(view, at, f.big_endian)
+                        : static_cast<double>(number_at<float>(view, at, f.big_endian));
     };
     for (std::size_t i = 0; i < f.count; ++i) {
       const std::size_t at = at_ + i * (before + size);
       if (before > 0) abscissa.push_back(value(at, before));
       ordinate.push_back(value(at + before, size));
     }
-    at_ += static_cast<std::size_t>(kind.bytes);
+    at_ += static_cast<std::size_t>(f.bytes);
   }
 
   void text_values(const Function& f, std::vector<double>& abscissa, std::vector<double>& ordinate) {
@@ -275,23 +265,19 @@ class File {
     column.place = by_ordinate && !f.title.empty() ? f.title : "";
     column.unit = f.unit;
     column.count = ordinate.size();
-    column.rows = rows_of(f, abscissa);
+    column.rows = f.even ? even_rows(f) : uneven_rows(f, abscissa);
     column.numbers = std::move(ordinate);
     table_.columns.push_back(std::move(column));
     ++columns_;
   }
 
   /// Functions of one spacing share rows; those of uneven spacing have the abscissa as a column of their own.
-  std::size_t rows_of(const Function& f, std::vector<double>& abscissa) {
-    return f.even ? even_rows(f) : uneven_rows(f, abscissa);
-  }
-
   std::size_t even_rows(const Function& f) {
     const bool stated = !f.abscissa_unit.empty();
     const std::optional<Unit> seconds = Unit{Quantity::time, 1, 0};
-    const auto unit = stated                              ? find_unit(f.abscissa_unit, Quantity::time)
-                      : f.abscissa == abscissa_type::time ? seconds
-                                                          : std::nullopt;
+    const auto unit = stated                        ? find_unit(f.abscissa_unit, Quantity::time)
+                      : f.abscissa == time_abscissa ? seconds
+                                                    : std::nullopt;
     const double factor = unit ? unit->factor : -1;  // those of an unknown unit share rows of their own
     const auto [at, is_new] = rows_.emplace(std::tuple(f.count, f.start * factor, f.interval * factor), 0);
     if (!is_new) return at->second;
@@ -301,15 +287,16 @@ class File {
       table_.rows[at->second].start = f.start * factor;
     } else {
       table_.notes.push_back(fmt::format(
-          "'{}' states an increment of {} {}: state the sampling rate with --rate", f.title, general(f.interval),
+          "'{}' states an increment of {} {}: state the sampling rate with {}", f.title, general(f.interval),
           stated ? fmt::format("in '{}', which is no known unit of time", f.abscissa_unit)
-                 : "of an unknown abscissa without a unit"));
+                 : "of an unknown abscissa without a unit",
+          setting("rate")));
     }
     return at->second;
   }
 
   std::size_t uneven_rows(const Function& f, std::vector<double>& abscissa) {
-    const std::string unit = f.abscissa_unit.empty() && f.abscissa == abscissa_type::time ? "s" : f.abscissa_unit;
+    const std::string unit = f.abscissa_unit.empty() && f.abscissa == time_abscissa ? "s" : f.abscissa_unit;
     const std::string_view bytes(reinterpret_cast<const char*>(abscissa.data()), abscissa.size() * sizeof(double));
     const auto [known, is_new] = times_.emplace(xxh64(unit, xxh64(bytes)), table_.columns.size());
     if (!is_new && table_.columns[known->second].numbers == abscissa) return table_.columns[known->second].rows;
@@ -369,6 +356,13 @@ RawTable read_universal_file(std::shared_ptr<const InputFile> file) {
 
 }  // namespace
 
+/// Universal files (UFF), datasets 58 and 58b: real functions of time, as text or binary of either order of bytes,
+/// evenly spaced or not. Each is a column, named by its first line or its ordinate; those of the same spacing share
+/// rows. Other datasets, complex functions and functions of anything but time (spectra, orders, ...) are named and not
+/// read. An abscissa that states neither that it is time nor a unit of time gives no rate: the user states it.
+///
+/// After "Universal Dataset Number 58: Function at Nodal DOF" (SDRC, University of Cincinnati), whose binary form 58b
+/// has the same eleven lines of text and then the values.
 const Reader uff_reader = {"UFF 58", is_universal_file, read_universal_file};
 
 }  // namespace tribofit

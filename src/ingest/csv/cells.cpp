@@ -1,11 +1,12 @@
-#include "clock_time.hpp"
+#include "cells.hpp"
+
+#include <fast_float/fast_float.h>
 
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <string>
 
-#include "dialect.hpp"
+#include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
 namespace {
@@ -20,6 +21,46 @@ std::optional<double> seconds_of_date(int year, int month, int day) {
 }
 
 }  // namespace
+
+std::vector<std::string> split_cells(std::string_view line, char separator) {
+  std::vector<std::string> cells(1);
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+  if (separator == blanks) line = trimmed(line);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') {
+      if (quoted && i + 1 < line.size() && line[i + 1] == '"')
+        cells.back() += line[++i];
+      else
+        quoted = !quoted;
+    } else if (separator == blanks && is_blank(line[i]) && !quoted) {
+      if (!is_blank(line[i - 1])) cells.emplace_back();
+    } else if (line[i] == separator && !quoted) {
+      cells.emplace_back();
+    } else {
+      cells.back() += line[i];
+    }
+  }
+  for (std::string& cell : cells) cell = std::string(trimmed(cell));
+  return cells;
+}
+
+std::optional<double> number_in(std::string_view cell, char decimal) {
+  if (cell.size() > 1 && cell.front() == '+' && cell[1] != '-') cell.remove_prefix(1);
+  const char *begin = cell.data(), *end = begin + cell.size();
+  for (const char mark : {decimal, '.'}) {
+    double value = 0;
+    const fast_float::parse_options form(fast_float::chars_format::general, mark);
+    const auto [last, error] = fast_float::from_chars_advanced(begin, end, value, form);
+    if (error != std::errc::invalid_argument && last == end) return value;
+  }
+  return std::nullopt;
+}
+
+bool is_number(std::string_view cell, char decimal) {
+  cell = trimmed(cell);
+  return (decimal == '.' || cell.find('.') == std::string_view::npos) && number_in(cell, decimal);
+}
 
 std::optional<double> clock_time(std::string_view cell) {
   if (cell.find(':') == std::string_view::npos) return std::nullopt;
