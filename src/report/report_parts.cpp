@@ -112,7 +112,6 @@ void TraceSections::add_models(const DrawnTrace& drawn) {
   const std::function<void()> draw[] = {[&] { of_law = law_chart(drawn); }, [&] { of_errors = error_charts(drawn); },
                                         [&] { windows = cycle_charts(drawn); }};
   run_tasks(std::size(draw), drawn.threads, [&](std::size_t k) { draw[k](); });
-  if (windows.empty()) windows.push_back(record_chart(drawn));
   trace.add(std::move(windows));
   law.add(std::move(of_law));
   errors.add(std::move(of_errors));
@@ -121,7 +120,6 @@ void TraceSections::add_models(const DrawnTrace& drawn) {
 void TraceSections::add_cycles(const DrawnTrace& drawn) {
   if (drawn.trace.motion.is_points() || drawn.trace.motion.size() < 2) return;
   cycles.add(measure_charts(drawn));
-  if (shows_cycles(drawn)) cycles.add(record_chart(drawn));
 }
 
 ReportSection result_section(const Report& report, const std::string& title) {

@@ -162,9 +162,10 @@ Chart differences_chart(const Twin& twin) {
 ReportSection motion_section(const Twin& twin, const std::string& unit) {
   ReportSection section{"motion", "Measured and simulated motion", {}};
   std::vector<DrawnMotion> motions;
-  if (twin.measured.size() > 0) motions.emplace_back("measured", twin.measured);
+  if (twin.measured.size() > 0) motions.push_back(drawn_motion("measured", twin.measured));
   for (std::size_t c = 0; c < twin.simulated.size(); ++c) {
-    if (twin.simulated[c].size() > 0) motions.emplace_back("simulated, " + twin.short_name(c), twin.simulated[c]);
+    if (twin.simulated[c].size() == 0) continue;
+    motions.push_back(drawn_motion("simulated, " + twin.short_name(c), twin.simulated[c]));
   }
   if (motions.empty()) return section;
   Chart chart{
@@ -180,13 +181,13 @@ ReportSection motion_section(const Twin& twin, const std::string& unit) {
   Animation alive{.id = "twin-block",
                   .title = "The block on its disc",
                   .note = "Three cycles each, from break-away to break-away.",
-                  .disc_velocity = disc / kMillimetre};
+                  .disc_velocity = disc / kMillimetre,
+                  .blocks = motions};
   for (std::size_t k = 0; k < motions.size(); ++k) {
     add_over_time(motions[k], {unit == "N" ? "friction" : "mu", unit}, stroke_for(k), chart);
     add_loop(motions[k], stroke_for(k), portrait);
-    alive.blocks.push_back(animated(motions[k]));
   }
-  shade_sticks({"measured", twin.measured}, chart);
+  shade_sticks(drawn_motion("measured", twin.measured), chart);
   if (twin.measured.size() > 0) chart.marks.push_back(disc_mark(disc));
   for (Chart* one : {&chart, &portrait}) section.add(std::move(*one));
   section.add(std::move(alive));

@@ -50,10 +50,6 @@ constexpr std::array<const char*, 5> kStates = {"none", "running", "done", "canc
 
 }  // namespace
 
-Json problem_json(const std::string& problem, const std::string& why, const std::string& suggestion) {
-  return {{"problem", problem}, {"why", why}, {"suggestion", suggestion}};
-}
-
 Json rung_json(const WorkbenchRung& rung, const Motion& motion, bool with_parameters) {
   const Fit& fit = rung.fit;
   Json json = {{"number", rung.number == WorkbenchRung::passed_by ? Json(nullptr) : Json(rung.number)},

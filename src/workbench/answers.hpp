@@ -9,9 +9,6 @@ namespace tribofit::workbench {
 
 /// What the server says of a session, as JSON.
 
-/// {"problem", "why", "suggestion"}
-Json problem_json(const std::string& problem, const std::string& why, const std::string& suggestion);
-
 /// Trace, laws, catalogue and choice to begin with.
 Json begin_json(const WorkbenchSession& session);
 

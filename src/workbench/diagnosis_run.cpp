@@ -96,10 +96,8 @@ void DiagnosisRun::run() {
     {
       const std::lock_guard lock(mutex_);
       status_.found = found_by(result_, request_.part);
-      for (const Rung& rung : found.ladder) {
-        status_.ladder.push_back({rung.added, rung.held_out_rmse, rung.held_out_std_error, rung.rmse});
-        status_.leaves_open |= !rung.equivalent.empty();
-      }
+      status_.ladder = found.ladder;
+      for (const Rung& rung : found.ladder) status_.leaves_open |= !rung.equivalent.empty();
       for (const EffectFinding& effect : found.effects) {
         status_.leaves_open |= effect.status == EffectStatus::possible;
       }

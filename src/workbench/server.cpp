@@ -45,14 +45,12 @@ void answer(httplib::Response& response, const Json& json, int status = 200) {
   response.set_content(line_of(json), "application/json; charset=utf-8");
 }
 
-void say_that_it_cannot_be(httplib::Response& response, const std::string& why, const std::string& suggestion,
-                           int status = kUnfit) {
-  answer(response, problem_json("this cannot be done", why, suggestion), status);
-}
-
-void refuse(httplib::Response& response, int status, const std::string& why, const std::string& suggestion) {
-  response.set_header("Connection", "close");
-  answer(response, problem_json("the request is refused", why, suggestion), status);
+/// Says why not.
+void deny(httplib::Response& response, int status, const std::string& why, const std::string& suggestion) {
+  const bool refused = status != kUnfit && status != kBroken;
+  if (refused) response.set_header("Connection", "close");
+  const char* problem = refused ? "the request is refused" : "this cannot be done";
+  answer(response, {{"problem", problem}, {"why", why}, {"suggestion", suggestion}}, status);
 }
 
 std::string only(const httplib::Request& request, const char* header) {
@@ -146,24 +144,24 @@ struct WorkbenchServer::State {
 /// Whether a request comes from a page of this server and can be read.
 bool WorkbenchServer::State::admits(const httplib::Request& request, httplib::Response& response) const {
   if (const std::string why = refusal(request, port); !why.empty()) {
-    refuse(response, kForbidden, why, "open the address that `identify explore` prints");
+    deny(response, kForbidden, why, "open the address that `identify explore` prints");
     return false;
   }
   const bool in_address = request.path == "/" && request.get_param_value_count("token") == 1;
   const std::string given = in_address ? request.get_param_value("token") : only(request, "X-Workbench-Token");
   if (!same_secret(given, token)) {
-    refuse(response, kForbidden, "the token is missing or wrong", "open the address that `identify explore` prints");
+    deny(response, kForbidden, "the token is missing or wrong", "open the address that `identify explore` prints");
     return false;
   }
   if (request.method != "GET" && request.method != "POST") {
-    refuse(response, kWrongMethod, "there is only GET and POST", "use the page");
+    deny(response, kWrongMethod, "there is only GET and POST", "use the page");
     return false;
   }
   if (request.method == "GET") return true;
   const bool plain = !request.has_header("Transfer-Encoding") && !request.has_header("Content-Encoding") &&
                      only(request, "Content-Type").rfind(kJson, 0) == 0;
   if (!plain) {
-    refuse(response, kWrongType, "the body is not plain JSON", "use the page");
+    deny(response, kWrongType, "the body is not plain JSON", "use the page");
     return false;
   }
   return true;
@@ -176,13 +174,13 @@ void WorkbenchServer::State::post(const char* path, Do&& what) {
     try {
       what(parsed(request.body, "the request"), response);
     } catch (const InputError& error) {
-      say_that_it_cannot_be(response, error.problem(), error.advice());
+      deny(response, kUnfit, error.problem(), error.advice());
     } catch (const Stopped&) {
       answer(response, {{"superseded", true}});
     } catch (const Json::exception&) {
-      say_that_it_cannot_be(response, "the request is incomplete", "use the page");
+      deny(response, kUnfit, "the request is incomplete", "use the page");
     } catch (const std::bad_alloc&) {
-      say_that_it_cannot_be(response, "there is not enough memory", "choose a part of the record", kBroken);
+      deny(response, kBroken, "there is not enough memory", "choose a part of the record");
     }
   });
 }
@@ -278,10 +276,10 @@ WorkbenchServer::WorkbenchServer(WorkbenchSession& session, int port, Reread rer
     const char* why = status == kUnknown    ? "there is nothing with that name"
                       : status == kTooLarge ? "the body is too large"
                                             : "the request cannot be read";
-    answer(response, problem_json("the request is refused", why, "use the page"), status);
+    deny(response, status, why, "use the page");
   });
   s.http.set_exception_handler([](const httplib::Request&, httplib::Response& response, std::exception_ptr) {
-    say_that_it_cannot_be(response, "something failed", "choose another model", kBroken);
+    deny(response, kBroken, "something failed", "choose another model");
   });
   s.add_handlers();
   if (port == 0) {

@@ -10,18 +10,19 @@ export async function launch(driver, chromium, folder) {
 
   /** A page in which any complaint of the browser, and any address but the file's own, fails the test. */
   async function open(name, width, more = {}) {
-    const context = await browser.newContext({ viewport: { width, height: 900 }, ...more });
+    const context = await browser.newContext({ viewport: { width, height: 900 }, acceptDownloads: true, ...more });
     const page = await context.newPage();
     page.setDefaultTimeout(120000);
     const complaints = [];
     page.on("console", (message) => ["error", "warning"].includes(message.type()) && complaints.push(message.text()));
     page.on("pageerror", (error) => complaints.push(error.stack));
+    page.on("dialog", (dialog) => complaints.push(dialog.message()));
     const address = pathToFileURL(join(folder, name)).href;
     page.on("request", (request) => {
       if (request.url() !== address && !/^(data|blob):/.test(request.url())) complaints.push(request.url());
     });
     await page.goto(address);
-    await page.waitForFunction(() => document.documentElement.dataset.drawn === "all");
+    await lookAtAll(page);
     const close = async () => {
       assert.deepEqual(complaints, [], `complaints of ${name} at ${width} px`);
       await context.close();

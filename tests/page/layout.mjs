@@ -1,6 +1,8 @@
 // What a person could not read on a page: texts that are cut, lie over each other or reach beyond the page, words broken
 // in the middle, too little contrast, and what the keyboard does not reach.
 
+import { lookAtAll } from "./browser.mjs";
+
 // The first four run in the page.
 
 function nameOf(element) {
@@ -116,6 +118,6 @@ export async function unreached(page) {
 
 /** Waits until charts have the size of the page. */
 export async function settledLayout(page) {
-  await page.waitForFunction(() => document.documentElement.dataset.drawn === "all");
+  await lookAtAll(page);
   await page.evaluate(() => new Promise((resolve) => setTimeout(() => requestAnimationFrame(() => requestAnimationFrame(resolve)), 150)));
 }

@@ -4,10 +4,9 @@ import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { pathToFileURL } from "node:url";
+import { launch } from "./browser.mjs";
 
 const [driver, chromium, identify, example, folder] = process.argv.slice(2);
-const playwright = await import(pathToFileURL(driver));
 const hostileName = "a<img src=x onerror=document.title='taken'>&b<b>.csv";
 
 function makePages() {
@@ -19,36 +18,6 @@ function makePages() {
   run("simulate", "--radius", "15mm", "--speed", "4rpm", "--duration", "32s", "--rate", "2kHz", "--effect",
     "runout:A=0.05,phase=1", "--noise-mu", "0.003", "--noise-v", "0.02mm/s", "--seed", "7", "--out", "runout.csv");
   run("diagnose", "--radius", "15mm", "--speed", "4rpm", "--quiet", "--report", "diagnosis.html", "runout.csv");
-}
-
-const browser = await playwright.chromium.launch({ executablePath: chromium,
-  args: process.getuid() === 0 ? ["--no-sandbox"] : [] });
-
-/** A page in which any complaint of the browser, and any address but the file's own, fails the test. */
-async function open(name, width) {
-  const context = await browser.newContext({ viewport: { width, height: 900 }, acceptDownloads: true });
-  const page = await context.newPage();
-  page.setDefaultTimeout(120000);
-  const complaints = [];
-  page.on("console", (message) => ["error", "warning"].includes(message.type()) && complaints.push(message.text()));
-  page.on("pageerror", (error) => complaints.push(error.stack));
-  page.on("dialog", (dialog) => complaints.push(dialog.message()));
-  const address = pathToFileURL(join(folder, name)).href;
-  page.on("request", (request) => {
-    if (request.url() !== address && !/^(data|blob):/.test(request.url())) complaints.push(request.url());
-  });
-  const begin = performance.now();
-  await page.goto(address);
-  await page.waitForSelector(".plot .main-svg");
-  const first = performance.now() - begin;
-  await page.waitForFunction(() => document.documentElement.dataset.drawn === "all");
-  console.log(`${name} at ${width} px: first chart after ${first.toFixed(0)} ms, ` +
-    `all after ${(performance.now() - begin).toFixed(0)} ms`);
-  const close = async () => {
-    assert.deepEqual(complaints, [], `complaints of ${name} at ${width} px`);
-    await context.close();
-  };
-  return { page, close };
 }
 
 /** Each chart has a title, axes with units, and its numbers behind a switch. */
@@ -190,6 +159,7 @@ async function checkPolicy(page) {
 }
 
 makePages();
+const { open, close: closeBrowser } = await launch(driver, chromium, folder);
 try {
   for (const width of [1280, 390]) {
     const { page, close } = await open("trace.html", width);
@@ -218,5 +188,5 @@ try {
   await checkPolicy(page); // which the browser complains of
   console.log("the page works");
 } finally {
-  await browser.close();
+  await closeBrowser();
 }

@@ -12,7 +12,7 @@
 
 namespace tribofit {
 
-/// What stands in an SVG that write_pictures() wrote.
+/// What stands in an SVG that PictureFiles wrote.
 
 using boost::property_tree::ptree;
 

@@ -94,44 +94,6 @@ TEST(Scale, IsThereWhateverTheData) {
   EXPECT_LE(scale_of({.logarithmic = true}, extent(5e-324, most, true), 0, 5).tics.size(), 12u);
 }
 
-/// Places of the points of a line.
-std::vector<std::pair<double, double>> places(const Path& path) {
-  std::vector<std::pair<double, double>> out;
-  for (const Point& point : path) out.emplace_back(point.x, point.y);
-  return out;
-}
-
-TEST(ThinnedLine, StaysWithinItsTolerance) {
-  constexpr double kStep = 0.004;
-  Path points;
-  for (int k = 0; k < 20000; ++k) points.push_back({k * kStep, 2 * std::sin(k * 0.001) + (k == 9000 ? 5.0 : 0.0)});
-  const Path kept = thinned_line(points, 0.02);
-  EXPECT_LT(kept.size(), 400u);
-  EXPECT_DOUBLE_EQ(kept.front().x, points.front().x);
-  EXPECT_DOUBLE_EQ(kept.back().x, points.back().x);
-  double farthest = 0, highest = 0;
-  for (std::size_t s = 0; s + 1 < kept.size(); ++s) {
-    const Point &a = kept[s], &b = kept[s + 1];
-    ASSERT_LT(a.x, b.x);
-    highest = std::max(highest, b.y);
-    for (auto k = static_cast<std::size_t>(std::lround(a.x / kStep)); points[k].x < b.x; ++k) {
-      if (k >= 8990 && k <= 9010) continue;  // upright there, where the distance along the ordinate means nothing
-      farthest = std::max(farthest, std::abs(points[k].y - a.y - (points[k].x - a.x) / (b.x - a.x) * (b.y - a.y)));
-    }
-  }
-  EXPECT_GT(highest, 5);       // the peak
-  EXPECT_LT(farthest, 0.023);  // 0.02 across the line
-}
-
-TEST(ThinnedLine, OfFewPointsIsAll) {
-  using Places = std::vector<std::pair<double, double>>;
-  EXPECT_EQ(places(thinned_line({}, 0.02)), Places{});
-  EXPECT_EQ(places(thinned_line({{1, 1}}, 0.02)), (Places{{1, 1}}));
-  EXPECT_EQ(places(thinned_line({{0, 0}, {1, 5}, {2, 0}}, 0.02)), (Places{{0, 0}, {1, 5}, {2, 0}}));
-  EXPECT_EQ(places(thinned_line({{0, 0}, {1, 1}, {2, 2}}, 0.02)), (Places{{0, 0}, {2, 2}}));
-  EXPECT_EQ(places(thinned_points({{0, 0}, {0.001, 0.001}, {1, 1}}, 0.1)), (Places{{0, 0}, {1, 1}}));
-}
-
 TEST(PictureText, IsOneLineOfValidCharacters) {
   EXPECT_EQ(one_line("it's \\"), "it's \\");
   EXPECT_EQ(one_line("a\nb\tc\x7f\xC2\x85"

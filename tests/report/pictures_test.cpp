@@ -59,7 +59,7 @@ class Pictures : public ::testing::Test {
  protected:
   std::string svg_of(const Chart& chart) {
     const std::string path = folder_.path("svg-" + std::to_string(++count_));
-    write_pictures(report_with(chart), path, PictureFormat::svg);
+    PictureFiles(report_with(chart), path, PictureFormat::svg).commit();
     return contents(path + "/" + chart.id + ".svg");
   }
   Folder folder_;
@@ -70,14 +70,14 @@ TEST_F(Pictures, HaveTheWidthOfAColumn) {
   const std::string svg = svg_of(straight_chart());
   EXPECT_THAT(svg, HasSubstr("width=\"85mm\""));
   if (!can_write_pictures(PictureFormat::pdf)) GTEST_SKIP() << "there is no rsvg-convert (scripts/setup figures)";
-  write_pictures(report_with(straight_chart()), folder_.path("p"), PictureFormat::pdf);
+  PictureFiles(report_with(straight_chart()), folder_.path("p"), PictureFormat::pdf).commit();
   const std::string pdf = contents(folder_.path("p/straight.pdf"));
   EXPECT_EQ(pdf.substr(0, 5), "%PDF-");
   std::smatch box;
   ASSERT_TRUE(std::regex_search(pdf, box, std::regex("/MediaBox \\[ *0 +0 +([0-9.]+) +([0-9.]+)")));
   EXPECT_NEAR(std::stod(box[1]) / 72 * 25.4, 85, 0.2);
   EXPECT_THAT(pdf, AllOf(HasSubstr("/FontFile"), HasSubstr("/Font")));  // embedded
-  write_pictures(report_with(straight_chart()), folder_.path("p"), PictureFormat::png);
+  PictureFiles(report_with(straight_chart()), folder_.path("p"), PictureFormat::png).commit();
   const std::string png = contents(folder_.path("p/straight.png"));
   const auto number = [&](std::size_t at) {
     unsigned value = 0;
@@ -256,19 +256,19 @@ TEST_F(Pictures, EveryFormatDrawsWhateverAChartHolds) {
   for (const PictureFormat format : {PictureFormat::svg, PictureFormat::pdf, PictureFormat::png}) {
     if (!can_write_pictures(format)) continue;
     const std::string path = folder_.path(name_of(format)), end = "." + name_of(format);
-    write_pictures(report, path, format);
+    PictureFiles(report, path, format).commit();
     for (const char* id : {"full", "empty", "nothing", "full-2"}) {
       EXPECT_GT(std::filesystem::file_size(path + "/" + id + end), 1000u) << id << end;
     }
   }
   const std::string once = contents(folder_.path("svg/full.svg"));
-  write_pictures(report, folder_.path("svg"), PictureFormat::svg);
+  PictureFiles(report, folder_.path("svg"), PictureFormat::svg).commit();
   EXPECT_EQ(contents(folder_.path("svg/full.svg")), once);
 }
 
 std::string refusal(const std::string& folder, PictureFormat format = PictureFormat::svg) {
   try {
-    write_pictures(report_with(straight_chart()), folder, format);
+    PictureFiles(report_with(straight_chart()), folder, format).commit();
   } catch (const std::runtime_error& error) {
     return error.what();
   }
@@ -284,7 +284,7 @@ TEST_F(Pictures, NeedRsvgConvertForSomeFormats) {
 TEST_F(Pictures, NeedAFolderAndSayThatThereIsNoChart) {
   Report bare;
   bare.lead = "Nothing slips.";
-  write_pictures(bare, folder_.path("none"), PictureFormat::svg);
+  PictureFiles(bare, folder_.path("none"), PictureFormat::svg).commit();
   std::ifstream captions(folder_.path("none/figures.txt"));
   std::string line;
   std::getline(captions, line);

@@ -38,7 +38,4 @@ class PictureFiles {
   std::shared_ptr<WholeFolder> folder_;
 };
 
-/// Writes the pictures of a report into `folder`, all of them or none.
-void write_pictures(const Report& report, const std::string& folder, PictureFormat format);
-
 }  // namespace tribofit

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <string>
 #include <utility>
@@ -17,7 +18,7 @@ struct RigIdentification;
 struct TwinIdentification;
 
 /// A report as data: title, what it says first, sections of texts, tables and charts. report_of() makes it of a result,
-/// once; render_terminal() prints it, report_page() makes one HTML file of it, write_pictures() a file of each chart.
+/// once; render_terminal() prints it, report_page() makes one HTML file of it, PictureFiles a file of each chart.
 
 /// Where a part of a report is shown. Charts and animations are for pages, whatever is said of them.
 enum class Medium { any, page, terminal };
@@ -91,9 +92,9 @@ struct ReportTable {
 /// A block on its disc in motion, each as long as one turn of its loop.
 struct Animation {
   struct Block {
-    std::string name;                                  ///< "measured", "simulated"
-    std::vector<double> time, displacement, friction;  ///< [s], [mm], [1 or N]; the loop begins anew at its end
-    std::vector<bool> sticks;
+    std::string name;                                            ///< "measured", "simulated"
+    std::vector<double> time, displacement, velocity, friction;  ///< [s], [mm], [mm/s], [1 or N]
+    std::vector<std::uint8_t> sticks;
   };
   std::string id = {}, title = {}, note = {};
   double disc_velocity = 0;  ///< omega r [mm/s]

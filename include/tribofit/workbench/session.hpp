@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/fit/identification.hpp"
 #include "tribofit/report/report.hpp"
 
@@ -52,11 +53,7 @@ struct WorkbenchDiagnosis {
   std::string sentence;   ///< the verdict, or why it failed
   std::string command;    ///< that makes the same diagnosis
   WorkbenchChoice found;  ///< the last rung of its ladder
-  struct Step {
-    std::string added;                                           ///< key; empty for the base law
-    double held_out_rmse = 0, held_out_std_error = 0, rmse = 0;  ///< [1 or N]
-  };
-  std::vector<Step> ladder;
+  std::vector<Rung> ladder;
   double floor_rmse = 0;                      ///< [1 or N]
   bool leaves_open = false;                   ///< effects are not distinguishable, or one is possible: a run may tell
   std::shared_ptr<const ReportSection> plan;  ///< of the runs that would, once it was asked for

@@ -7,17 +7,18 @@
 
 namespace tribofit {
 
-DrawnMotion::DrawnMotion(std::string its_name, std::span<const double> times, std::span<const double> displacements,
-                         std::span<const double> velocities, std::span<const double> frictions,
-                         std::span<const std::uint8_t> stick)
-    : name(std::move(its_name)) {
-  for (const std::size_t i : drawn_samples({displacements, velocities, frictions}, stick, chart_detail.motion)) {
-    time.push_back(times[i]);
-    displacement.push_back(displacements[i] / kMillimetre);
-    velocity.push_back(velocities[i] / kMillimetre);
-    friction.push_back(frictions[i]);
-    sticks.push_back(stick[i]);
+DrawnMotion drawn_motion(std::string name, std::span<const double> time, std::span<const double> displacement,
+                         std::span<const double> velocity, std::span<const double> friction,
+                         std::span<const std::uint8_t> sticks) {
+  DrawnMotion out{std::move(name), {}, {}, {}, {}, {}};
+  for (const std::size_t i : drawn_samples({displacement, velocity, friction}, sticks, chart_detail.motion)) {
+    out.time.push_back(time[i]);
+    out.displacement.push_back(displacement[i] / kMillimetre);
+    out.velocity.push_back(velocity[i] / kMillimetre);
+    out.friction.push_back(friction[i]);
+    out.sticks.push_back(sticks[i]);
   }
+  return out;
 }
 
 Chart portrait_plane(std::string id, std::string title, double disc_velocity) {
@@ -53,12 +54,6 @@ void shade_sticks(const DrawnMotion& m, Chart& chart) {
 
 ChartMark disc_mark(double disc_velocity) {
   return {disc_velocity / kMillimetre, false, Dash::dash_dotted, "speed of the disc"};
-}
-
-Animation::Block animated(const DrawnMotion& m) {
-  Animation::Block block{m.name, m.time, m.displacement, m.friction, {m.sticks.begin(), m.sticks.end()}};
-  for (double& t : block.time) t -= m.time.front();
-  return block;
 }
 
 }  // namespace tribofit

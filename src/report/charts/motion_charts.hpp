@@ -15,19 +15,15 @@ namespace tribofit {
 
 /// What is drawn of a motion: a few hundred extremes of each channel, three quarters of which lie in the slips, where
 /// things happen fast.
-struct DrawnMotion {
-  std::string name;
-  std::vector<double> time, displacement, velocity, friction;  ///< [s], [mm], [mm/s], [1 or N]
-  std::vector<std::uint8_t> sticks;
-
-  /// Channels of a motion in SI.
-  DrawnMotion(std::string its_name, std::span<const double> times, std::span<const double> displacements,
-              std::span<const double> velocities, std::span<const double> frictions,
-              std::span<const std::uint8_t> stick);
-  template <class Motion>
-  DrawnMotion(std::string its_name, const Motion& m)
-      : DrawnMotion(std::move(its_name), m.time, m.displacement, m.velocity, m.friction, m.sticks) {}
-};
+using DrawnMotion = Animation::Block;
+/// Of channels in SI.
+DrawnMotion drawn_motion(std::string name, std::span<const double> time, std::span<const double> displacement,
+                         std::span<const double> velocity, std::span<const double> friction,
+                         std::span<const std::uint8_t> sticks);
+template <class Motion>
+DrawnMotion drawn_motion(std::string name, const Motion& m) {
+  return drawn_motion(std::move(name), m.time, m.displacement, m.velocity, m.friction, m.sticks);
+}
 
 /// Velocity over displacement, without a line yet; the speed of the disc [m/s] is marked.
 Chart portrait_plane(std::string id, std::string title, double disc_velocity);
@@ -39,8 +35,5 @@ void add_over_time(const DrawnMotion& motion, const ChartAxis& friction, const S
 void shade_sticks(const DrawnMotion& motion, Chart& chart);
 /// The speed of the disc in the first panel.
 ChartMark disc_mark(double disc_velocity);
-
-/// A block that is drawn in motion.
-Animation::Block animated(const DrawnMotion& motion);
 
 }  // namespace tribofit

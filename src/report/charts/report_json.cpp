@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -21,11 +22,18 @@ constexpr auto drawn_time(Get get) {
   return to_digits(chart_detail.time_digits, get);
 }
 
-/// Everything about styles that the page must know, as CSS has it, under the names that lines, bars and stretches use.
+/// A member by the name of its style.
+template <class Get, class Styles>
+constexpr auto named(Get get, const Styles& styles) {
+  return [get, &styles](const auto& one) { return style_of(std::invoke(get, one), styles).name; };
+}
+
 std::string rgba(const Paint& paint) {
   const auto part = [&](std::size_t k) { return channel_of(paint.colour, k); };
   return fmt::format("rgba({},{},{},{})", part(0), part(1), part(2), paint.opacity);
 }
+
+/// Everything about styles that the page must know, as CSS has it, under the names that lines, bars and stretches use.
 Json styles_json() {
   Json json;
   for (std::size_t k = 0; k < kColours.size(); ++k) {
@@ -55,11 +63,6 @@ bool is_for_page(const Part& part) {
 
 }  // namespace
 
-static std::string_view to_string(ReportText::Kind kind) {
-  constexpr std::string_view kTexts[] = {"plain", "soft", "warning", "command", "heading", "item"};
-  return style_of(kind, kTexts);
-}
-
 constexpr auto description(const ChartAxis*) {
   return described("quantity", &ChartAxis::quantity, "unit", &ChartAxis::unit, "low", &ChartAxis::low, "high",
                    &ChartAxis::high, "from_zero", &ChartAxis::from_zero, "logarithmic", &ChartAxis::logarithmic,
@@ -69,8 +72,9 @@ constexpr auto description(const ChartPanel*) {
   return described("axis", &ChartPanel::axis, "part", &ChartPanel::part);
 }
 constexpr auto description(const Stroke*) {
-  return described("colour", &Stroke::colour, "dash", &Stroke::dash, "symbol", &Stroke::symbol, "width", &Stroke::width,
-                   "size", &Stroke::size, "joined", &Stroke::joined);
+  return described("colour", named(&Stroke::colour, kColours), "dash", named(&Stroke::dash, kDashes), "symbol",
+                   named(&Stroke::symbol, kSymbols), "width", &Stroke::width, "size", &Stroke::size, "joined",
+                   &Stroke::joined);
 }
 constexpr auto description(const ChartLine*) {
   return described(
@@ -79,12 +83,12 @@ constexpr auto description(const ChartLine*) {
       "shown", &ChartLine::shown, "panel", &ChartLine::panel);
 }
 constexpr auto description(const ChartBars*) {
-  return described("name", &ChartBars::name, "values", drawn(&ChartBars::values), "colour", &ChartBars::colour,
-                   "hatched", &ChartBars::hatched);
+  return described("name", &ChartBars::name, "values", drawn(&ChartBars::values), "colour",
+                   named(&ChartBars::colour, kColours), "hatched", &ChartBars::hatched);
 }
 constexpr auto description(const ChartMark*) {
-  return described("at", drawn_time(&ChartMark::at), "dash", &ChartMark::dash, "upright", &ChartMark::upright, "text",
-                   &ChartMark::text, "panel", &ChartMark::panel);
+  return described("at", drawn_time(&ChartMark::at), "dash", named(&ChartMark::dash, kDashes), "upright",
+                   &ChartMark::upright, "text", &ChartMark::text, "panel", &ChartMark::panel);
 }
 constexpr auto description(const ChartLabel*) {
   return described("x", drawn_time(&ChartLabel::x), "y", drawn(&ChartLabel::y), "text", &ChartLabel::text, "panel",
@@ -109,7 +113,7 @@ constexpr auto description(const Chart*) {
   const auto stretches = [](const Chart& chart) {
     return list_of(chart.stretches, [&](const Stretch& one) {
       return object("from", rounded(one.from, chart.x.digits), "to", rounded(one.to, chart.x.digits), "shade",
-                    to_string(one.shade));
+                    style_of(one.shade, kShades).name);
     });
   };
   return described(
@@ -118,8 +122,12 @@ constexpr auto description(const Chart*) {
       &Chart::bars, "map", &Chart::map, "stretches", stretches, "marks", &Chart::marks, "labels", &Chart::labels);
 }
 constexpr auto description(const ReportText*) {
+  const auto kind = [](const ReportText& text) {
+    constexpr std::string_view kTexts[] = {"plain", "soft", "warning", "command", "heading", "item"};
+    return style_of(text.kind, kTexts);
+  };
   return described(
-      "type", [](const ReportText&) { return "text"; }, "kind", &ReportText::kind, "text", &ReportText::text);
+      "type", [](const ReportText&) { return "text"; }, "kind", kind, "text", &ReportText::text);
 }
 constexpr auto description(const ReportFacts*) {
   return described(

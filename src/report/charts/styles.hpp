@@ -103,18 +103,6 @@ template <class Enum, class Styles>
 constexpr const auto& style_of(Enum value, const Styles& styles) {
   return styles[static_cast<std::size_t>(value)];
 }
-constexpr std::string_view to_string(Colour colour) {
-  return style_of(colour, kColours).name;
-}
-constexpr std::string_view to_string(Dash dash) {
-  return style_of(dash, kDashes).name;
-}
-constexpr std::string_view to_string(Symbol symbol) {
-  return style_of(symbol, kSymbols).name;
-}
-constexpr std::string_view to_string(Shade shade) {
-  return style_of(shade, kShades).name;
-}
 
 // How the same thing is drawn in every chart.
 

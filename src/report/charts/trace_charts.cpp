@@ -169,6 +169,16 @@ Chart cycle_chart(const DrawnTrace& d, const char* id, const char* title, ChartA
   return chart;
 }
 
+Chart record_chart(const DrawnTrace& d) {
+  Chart chart = window_chart(d, {0, d.trace.motion.size(), d.bins(chart_detail.record)}, false);
+  chart.id = d.id + "-record";
+  chart.title = "The whole record";
+  chart.note = "Each drawn interval shows its smallest and largest sample, so single-sample spikes stay visible.";
+  chart.height = 400;
+  shade_left_out(d, chart);
+  return chart;
+}
+
 }  // namespace
 
 DrawnTrace::DrawnTrace(const Identification& identification, const std::vector<const Fit*>& beside,
@@ -192,16 +202,11 @@ ChartAxis friction_axis(const Motion& motion) {
   return {force ? "friction force" : "friction μ", force ? "N" : "1"};
 }
 
-bool shows_cycles(const DrawnTrace& d) {
-  const ShownCycles shown = shown_cycles(d);
-  return shown.end >= shown.begin + 2;
-}
-
 std::vector<Chart> cycle_charts(const DrawnTrace& d) {
   const std::vector<Cycle>& cycles = d.trace.segmentation.cycles;
   const Motion& motion = d.trace.motion;
   const auto [first, begin, end] = shown_cycles(d);
-  if (end < begin + 2) return {};
+  if (end < begin + 2) return {record_chart(d)};
   Chart chart = window_chart(d, {begin, end, d.bins(chart_detail.cycles)}, true);
   chart.id = d.id + "-cycles";
   chart.title = d.models.empty() ? "Three cycles" : "Three cycles, measured and by the law";
@@ -215,16 +220,6 @@ std::vector<Chart> cycle_charts(const DrawnTrace& d) {
   if (shown.stick.size() > 0) charts.push_back(zoom_chart(d, shown.break_away_time, half, "break-away", "Break-away"));
   if (shown.slip_complete) charts.push_back(zoom_chart(d, shown.restick_time, half, "restick", "Re-stick"));
   return charts;
-}
-
-Chart record_chart(const DrawnTrace& d) {
-  Chart chart = window_chart(d, {0, d.trace.motion.size(), d.bins(chart_detail.record)}, false);
-  chart.id = d.id + "-record";
-  chart.title = "The whole record";
-  chart.note = "Each drawn interval shows its smallest and largest sample, so single-sample spikes stay visible.";
-  chart.height = 400;
-  shade_left_out(d, chart);
-  return chart;
 }
 
 std::vector<Chart> measure_charts(const DrawnTrace& d) {
@@ -242,6 +237,7 @@ std::vector<Chart> measure_charts(const DrawnTrace& d) {
                            {"period", &Cycle::period, Colour::green, Symbol::square}})};
   }
   charts.push_back(spectrum_chart(d));
+  if (const ShownCycles shown = shown_cycles(d); shown.end >= shown.begin + 2) charts.push_back(record_chart(d));
   return charts;
 }
 

@@ -29,13 +29,10 @@ struct DrawnTrace {
 };
 
 /// Three cycles with stick and slip shaded, and what happens within a tenth of a slip of a break-away and a re-stick;
-/// none where there are no three cycles. All series are reduced so that no peak is lost.
+/// the whole record where there are no three cycles. All series are reduced so that no peak is lost.
 std::vector<Chart> cycle_charts(const DrawnTrace& drawn);
-/// Whether there are three of them.
-bool shows_cycles(const DrawnTrace& drawn);
-/// The whole record.
-Chart record_chart(const DrawnTrace& drawn);
-/// Friction levels, peak velocities and durations of each cycle, and the spectrum of v_r.
+/// Friction levels, peak velocities and durations of each cycle, the spectrum of v_r, and behind three cycles the whole
+/// record.
 std::vector<Chart> measure_charts(const DrawnTrace& drawn);
 
 /// Friction over |v_r|: branches as bands over cycles, laws with their 95 % bands, residuals in units of the noise

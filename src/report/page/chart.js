@@ -266,7 +266,7 @@ function makeChart(chart) {
   const plot = make("div", { className: "plot", id: chart.id, tabindex: "0", role: "img",
     "aria-label": `Chart: ${chart.title}. Keys: plus and minus zoom, arrows move, 0 shows all. ` +
       "Its numbers stand in the table below it." });
-  const item = { plot, switched: new Map(), shown: "", near: false, drag: {}, title: make("h3"), note: make("p"),
+  const item = { plot, switched: new Map(), shown: "", drag: {}, title: make("h3"), note: make("p"),
     legend: make("div", { className: "legend" }), tools: make("div", { className: "tools" }) };
   item.numbers = numbersOf(chart.id, () => headerOf(item.chart), () => rowsOf(item.chart));
   item.figure = make("figure", {}, make("figcaption", {}, item.title, item.note), plot, item.legend, item.tools, item.numbers);

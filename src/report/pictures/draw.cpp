@@ -15,21 +15,6 @@ BOOST_GEOMETRY_REGISTER_LINESTRING(tribofit::Path)
 
 namespace tribofit {
 
-Path thinned_line(const Path& points, double tolerance) {
-  Path out;
-  boost::geometry::simplify(points, out, tolerance);
-  return out;
-}
-
-Path thinned_points(const Path& points, double cell) {
-  std::set<std::pair<double, double>> taken;
-  Path out;
-  for (const Point& p : points) {
-    if (taken.emplace(std::floor(p.x / cell), std::floor(p.y / cell)).second) out.push_back(p);
-  }
-  return out;
-}
-
 namespace {
 
 constexpr Paint kGrid = {kGridColour}, kMark = {kAxisColour};
@@ -59,15 +44,27 @@ Path points_of(const Panel& panel, const ChartLine& line, const std::vector<doub
   return points;
 }
 
-/// Runs of points that are finite, without those that are not distinguishable on paper.
+/// Runs of points that are finite, without those that are not distinguishable on paper (Douglas and Peucker 1973): no
+/// peak is lost.
 std::vector<Path> thinned_runs(const Path& points) {
   std::vector<Path> runs;
   for (auto begin = points.begin(), end = begin; begin != points.end(); begin = end) {
     begin = std::find_if(begin, points.end(), finite);
     end = std::find_if_not(begin, points.end(), finite);
-    if (begin != end) runs.push_back(thinned_line({begin, end}, sizes.tolerance));
+    if (begin != end) boost::geometry::simplify(Path(begin, end), runs.emplace_back(), sizes.tolerance);
   }
   return runs;
+}
+
+/// Of points that are not joined the first within each square of paper.
+Path thinned_points(const Path& points) {
+  std::set<std::pair<double, double>> taken;
+  Path out;
+  for (const Point& p : points) {
+    const double cell = sizes.symbol_cell;
+    if (taken.emplace(std::floor(p.x / cell), std::floor(p.y / cell)).second) out.push_back(p);
+  }
+  return out;
 }
 
 /// Colour of a part of the map's range, 0 to 1, in steps; none where there is no value.
@@ -192,7 +189,7 @@ class Drawing {
     for (const Point& one : points) {
       if (p.area.holds(one)) inside.push_back(one);
     }
-    const Path apart = thinned_points(inside, sizes.symbol_cell);
+    const Path apart = thinned_points(inside);
     const std::size_t every = line.stroke.joined ? 1 + apart.size() / kMostSymbols : 1;
     for (std::size_t k = 0; k < apart.size(); k += every) kept.push_back(apart[k]);
     draw_symbols(kept, line.stroke);

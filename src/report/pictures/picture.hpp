@@ -15,13 +15,6 @@ namespace tribofit {
 /// A chart as SVG.
 std::string drawn(const Chart& chart);
 
-/// The points to draw of a line without gaps, so that it stays within `tolerance` [mm] of all of them (Douglas and
-/// Peucker 1973): what is not distinguishable on paper is left out, and no peak is lost. Cost: n log n.
-Path thinned_line(const Path& points, double tolerance);
-
-/// The same of points that are not joined: the first of those within a square of side `cell` [mm].
-Path thinned_points(const Path& points, double cell);
-
 // Axes: scale.cpp.
 
 /// Where a value stands on an axis: its decimal logarithm on a logarithmic one, which has no place for what is not

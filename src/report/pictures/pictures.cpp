@@ -97,8 +97,4 @@ void PictureFiles::commit() {
   folder_->commit();
 }
 
-void write_pictures(const Report& report, const std::string& folder, PictureFormat format) {
-  PictureFiles(report, folder, format).commit();
-}
-
 }  // namespace tribofit

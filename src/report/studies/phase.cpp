@@ -19,13 +19,14 @@ Chart portrait_chart(const StudiedMachine& studied, const Portrait& portrait, st
   Chart chart = portrait_plane(
       fmt::format("phase-{}", number),
       fmt::format("Portrait at {}: {}", speed_text(portrait), to_string(portrait.settled.regime)), portrait.velocity);
-  add_loop({"from the start", portrait.start}, {.colour = Colour::grey, .dash = Dash::dotted, .width = 1}, chart);
+  add_loop(drawn_motion("from the start", portrait.start), {.colour = Colour::grey, .dash = Dash::dotted, .width = 1},
+           chart);
   if (portrait.cycle.size() > 0) {
-    add_loop({"settled cycle", portrait.cycle}, {.colour = Colour::black, .width = 2}, chart, true);
+    add_loop(drawn_motion("settled cycle", portrait.cycle), {.colour = Colour::black, .width = 2}, chart, true);
   }
   const BlockMotion measured = measured_motion(studied, portrait.velocity);
   if (measured.size() > 0) {
-    add_loop({fmt::format("measured, {} cycles", measured.cycles), measured},
+    add_loop(drawn_motion(fmt::format("measured, {} cycles", measured.cycles), measured),
              {.colour = Colour::red, .dash = Dash::dashed, .width = 1.2}, chart);
   }
   chart.height = 380;
@@ -38,7 +39,8 @@ Chart all_portraits(const std::vector<Portrait>& study, const std::vector<std::s
   chart.marks.clear();
   for (std::size_t k = 0; k < drawn.size(); ++k) {
     const Portrait& portrait = study[drawn[k]];
-    if (portrait.cycle.size() > 0) add_loop({speed_text(portrait), portrait.cycle}, stroke_of(k), chart, true);
+    if (portrait.cycle.size() > 0)
+      add_loop(drawn_motion(speed_text(portrait), portrait.cycle), stroke_of(k), chart, true);
   }
   return chart;
 }
@@ -49,7 +51,7 @@ Chart time_chart(const Portrait& portrait, std::size_t number) {
               .x = {.quantity = "time", .unit = "s", .digits = 7},
               .marks = {disc_mark(portrait.velocity)},
               .height = 520};
-  const DrawnMotion motion("motion", portrait.start);
+  const DrawnMotion motion = drawn_motion("motion", portrait.start);
   add_over_time(motion, {"friction", "1"}, stroke_of(0), chart);
   shade_sticks(motion, chart);
   return chart;
@@ -62,10 +64,10 @@ Animation animation_of(const StudiedMachine& studied, const Portrait& portrait, 
                 .disc_velocity = portrait.velocity / kMillimetre};
   const BlockMotion measured = measured_motion(studied, portrait.velocity);
   if (measured.size() > 0) {
-    out.blocks.push_back(animated({"measured", measured}));
+    out.blocks.push_back(drawn_motion("measured", measured));
     out.note = "Measured (three cycles) beside simulated (one settled cycle).";
   }
-  out.blocks.push_back(animated({"simulated", portrait.cycle}));
+  out.blocks.push_back(drawn_motion("simulated", portrait.cycle));
   return out;
 }
 
