@@ -229,8 +229,8 @@ Chart predicted_chart(const RunPlan& plan, const PredictedCurves& curves, const 
       .id = id,
       .title = capitalised(curves.quantity) + " as each model predicts it",
       .note = "Bands hold 95 % of the records that a model makes, with its parameters drawn within their errors.",
-      .x = {.quantity = curves.name, .unit = curves.unit}};
-  chart.panels[0].axis = {.quantity = curves.quantity, .unit = force ? "N" : "1"};
+      .x = {.quantity = curves.name, .unit = curves.unit},
+      .panels = {{.quantity = curves.quantity, .unit = force ? "N" : "1"}}};
   for (std::size_t m = 0; m < curves.models.size() && m < plan.models.size(); ++m) {
     const PredictedCurves::OfModel& model = curves.models[m];
     ChartLine& line = chart.line("if " + model_text(plan.models[m]), stroke_of(m));

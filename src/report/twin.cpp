@@ -135,7 +135,7 @@ Chart differences_chart(const Twin& twin) {
               .note = fmt::format("Beyond {:g} standard errors a difference is not chance.", kTwinIsOff),
               .x = {.quantity = "difference", .unit = "standard errors"},
               .height = 130 + 26 * static_cast<int>(twin.measures.size())};
-  ChartAxis& names = chart.panels[0].axis;
+  ChartAxis& names = chart.panels[0];
   names.falling = true;
   for (const TwinMeasure& m : twin.measures) names.names.push_back(m.name);
   double largest = 4;

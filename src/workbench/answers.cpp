@@ -1,9 +1,8 @@
-#include "answers.hpp"
+#include "session_json.hpp"
 
 #include <array>
 #include <utility>
 
-#include "choice_json.hpp"
 #include "report/charts/styles.hpp"
 #include "report/numbers.hpp"
 #include "tribofit/friction/effects/all.hpp"
@@ -48,8 +47,7 @@ Json catalogue_json(const Motion& motion) {
 /// In the order of WorkbenchDiagnosis::State.
 constexpr std::array<const char*, 5> kStates = {"none", "running", "done", "cancelled", "failed"};
 
-}  // namespace
-
+/// A rung with its errors and parameters; without the parameters where it is only listed.
 Json rung_json(const WorkbenchRung& rung, const Motion& motion, bool with_parameters) {
   const Fit& fit = rung.fit;
   Json json = {{"number", rung.number == WorkbenchRung::passed_by ? Json(nullptr) : Json(rung.number)},
@@ -58,14 +56,11 @@ Json rung_json(const WorkbenchRung& rung, const Motion& motion, bool with_parame
                {"held_out_rmse", number(fit.error.held_out_rmse)},
                {"held_out_std_error", number(held_out_std_error(fit))},
                {"rmse", number(fit.error.rmse)},
-               {"mean_relative", number(fit.error.mean_relative)},
                {"floor_rmse", number(fit.floor.rmse)},
                {"unit", friction_unit(motion)},
                {"cycles", fit.cycles},
-               {"converged", fit.converged},
                {"full", rung.detail == FitDetail::full},
-               {"command", rung.command},
-               {"fit_ms", 1e3 * rung.seconds}};
+               {"command", rung.command}};
   if (!with_parameters) return json;
   json["messages"] = fit.messages;
   json["parameters"] = Json::array();
@@ -82,6 +77,8 @@ Json rungs_json(const WorkbenchSession& session) {
   for (const WorkbenchRung& rung : session.rungs()) list.push_back(rung_json(rung, session.motion(), false));
   return list;
 }
+
+}  // namespace
 
 Json begin_json(const WorkbenchSession& session) {
   const WorkbenchRecord& record = session.record();

@@ -1,4 +1,4 @@
-#include "choice_json.hpp"
+#include "session_json.hpp"
 
 #include <fmt/format.h>
 

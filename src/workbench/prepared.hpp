@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "choice_json.hpp"
+#include "session_json.hpp"
 #include "tribofit/fit/identification.hpp"
 #include "tribofit/report/report.hpp"
 

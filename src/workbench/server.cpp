@@ -13,9 +13,8 @@
 #include <random>
 #include <utility>
 
-#include "answers.hpp"
-#include "choice_json.hpp"
 #include "connections.hpp"
+#include "session_json.hpp"
 #include "tribofit/execution/stop.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/report/page.hpp"

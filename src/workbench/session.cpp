@@ -10,12 +10,12 @@
 #include <semaphore>
 #include <utility>
 
-#include "choice_json.hpp"
 #include "diagnosis_run.hpp"
 #include "fit/assessment.hpp"
 #include "prepared.hpp"
 #include "report/numbers.hpp"
 #include "report/report_parts.hpp"
+#include "session_json.hpp"
 #include "tribofit/execution/stop.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/pipeline.hpp"
@@ -172,11 +172,9 @@ struct WorkbenchSession::State {
 
 WorkbenchRung WorkbenchSession::State::fitted(const WorkbenchChoice& choice, const IdentifyOptions& identify,
                                               FitDetail detail, const Motion& motion, TracePart& part) const {
-  const auto begin = std::chrono::steady_clock::now();
   const std::size_t said = part.warnings.size();
   fit_trace(identify, motion, part);
   WorkbenchRung rung;
-  rung.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const bool fits = part.analysed && !part.fits.empty() && !part.fits[0].parameters.empty();
   if (!fits) {
     std::string why = "no fit is possible";

@@ -7,7 +7,7 @@
 #include "tribofit/friction/formula.hpp"
 #include "tribofit/ingest/instruments.hpp"
 #include "tribofit/workbench/session.hpp"
-#include "workbench/choice_json.hpp"
+#include "workbench/session_json.hpp"
 
 namespace tribofit::fuzz {
 

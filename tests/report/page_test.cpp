@@ -88,7 +88,7 @@ TEST_F(Page, AChartIsAsItWasDescribed) {
   Chart chart;
   chart.id = "one";
   chart.x = {"time", "s"};
-  chart.panels[0].axis = {"v_{r}", "mm/s"};
+  chart.panels[0] = {"v_{r}", "mm/s"};
   chart.lines.push_back({"a", {0, 1, 2}, {1, std::nan(""), 0.123456789}, {Colour::red, Dash::dotted, Symbol::square}});
   Report report;
   report.kind = "study";

@@ -147,7 +147,7 @@ TEST(CellEdges, LieHalfwayBetweenCentres) {
 TEST(PictureLayout, KeepsTheLegendBelowTheData) {
   Chart chart;
   chart.x = {.quantity = "time", .unit = "s"};
-  chart.panels = {{{.quantity = "friction"}}, {{.quantity = "velocity", .unit = "mm/s"}, 0.5}};
+  chart.panels = {{.quantity = "friction"}, {.quantity = "velocity", .unit = "mm/s", .part = 0.5}};
   for (int k = 0; k < 7; ++k) {
     chart.lines.push_back({"a line with a name of some length, " + std::to_string(k), {0, 1}, {0, 1}});
   }

@@ -43,7 +43,7 @@ Chart straight_chart() {
   chart.title = "A straight <line>";
   chart.note = "It is straight.";
   chart.x = {"speed |v_{r}|", "mm/s", 0, 10};
-  chart.panels[0].axis = {"acceleration", "mm/s^{2}", 0, 5};
+  chart.panels[0] = {"acceleration", "mm/s^{2}", 0, 5};
   ChartLine line{"straight", {}, {}, {Colour::blue}};
   for (int k = 0; k <= 1000; ++k) {
     line.x.push_back(k / 100.0);
@@ -136,7 +136,7 @@ TEST_F(Pictures, AGapInALineStaysOne) {
 
 TEST_F(Pictures, ASpikeOfOneSampleIsDrawn) {
   Chart chart = straight_chart();
-  chart.panels[0].axis.low = chart.panels[0].axis.high = kFromData;
+  chart.panels[0].low = chart.panels[0].high = kFromData;
   chart.lines.resize(1);
   ChartLine& line = chart.lines[0];
   line.x.clear(), line.y.clear();
@@ -155,7 +155,7 @@ TEST_F(Pictures, ASpikeOfOneSampleIsDrawn) {
 TEST_F(Pictures, NamesAreShownAsTheyAre) {
   Chart chart = straight_chart();
   chart.lines[0].name = kAwkward;
-  chart.panels[0].axis.quantity = "50% `d` $H \\a it's a_b {";
+  chart.panels[0].quantity = "50% `d` $H \\a it's a_b {";
   chart.marks = {{3, true, Dash::dotted, "it's `here` {"}};
   chart.labels = {{5, 2, "a \\ 100%"}};
   const std::string svg = svg_of(chart);
@@ -181,7 +181,7 @@ TEST_F(Pictures, WhatIsSwitchedOffIsLeftOut) {
 
 TEST_F(Pictures, PanelsShareTheAbscissa) {
   Chart chart = straight_chart();
-  chart.panels.push_back({{"residual", "1", -1, 1}, 0.5});
+  chart.panels.push_back({.quantity = "residual", .unit = "1", .low = -1, .high = 1, .part = 0.5});
   chart.lines.push_back({"below", {0, 10}, {-1, 1}, {Colour::green}});
   chart.lines.back().panel = 1;
   chart.stretches = {{2, 4, Shade::stick}, {4, 5, Shade::slip}};
@@ -200,7 +200,7 @@ TEST_F(Pictures, AMapHasABoxForEachCellAndNoneForNaN) {
   Chart chart;
   chart.id = "map";
   chart.x = {"speed", "mm/s"};
-  chart.panels[0].axis = {"damping", "1"};
+  chart.panels[0] = {"damping", "1"};
   chart.map = HeatMap{{1, 2, 3}, {0, 1}, {{0, 1, 2}, {3, kNaN, 5}}, "amplitude", "mm"};
   const std::string svg = svg_of(chart);
   const std::string drawn = plotted(svg);
@@ -220,7 +220,7 @@ TEST_F(Pictures, BarsEndAtTheirValues) {
   Chart chart;
   chart.id = "bars";
   chart.x = {"share", "%", 0, 100};
-  chart.panels[0].axis.names = {"time", "angle"};
+  chart.panels[0].names = {"time", "angle"};
   chart.bars = {{"law", {50, 100}, Colour::blue, false}, {"final model", {20, 0}, Colour::red, true}};
   const std::string svg = svg_of(chart);
   EXPECT_THAT(texts_of(svg), AllOf(Contains("time"), Contains("angle"), Contains("law"), Contains("final model")));
@@ -249,7 +249,7 @@ TEST_F(Pictures, EveryFormatDrawsWhateverAChartHolds) {
   Chart nothing = straight_chart();
   nothing.id = "nothing";
   nothing.x = {"x", "1"};
-  nothing.panels[0].axis = {"y", "1"};
+  nothing.panels[0] = {"y", "1"};
   nothing.lines = {{"gone", {kNaN, 1}, {1, kNaN}, {}}, {"short", {1, 2, 3}, {1}, {}}};
   Report report = report_with(full);
   report.sections.push_back({"two", "Two", {empty, nothing, full}});

@@ -143,7 +143,7 @@ TEST(ReportOfADiagnosis, TheLadderFallsToItsFloor) {
 
 TEST(ReportOfADiagnosis, ErrorsBeforeAndAfterStandBesideTheSameNames) {
   const Chart where = chart_of(report_of(made_up_diagnosis()), "where");
-  EXPECT_THAT(where.panels[0].axis.names, ElementsAre("velocity", "time", "angle", "whole error"));
+  EXPECT_THAT(where.panels[0].names, ElementsAre("velocity", "time", "angle", "whole error"));
   // Shares of the square above the noise floor: 2, 7 and 82 % of 0.0088^2 - 0.0031^2, 3 % of 0.0032^2 - 0.0031^2.
   const auto above = [](double share, double whole) {
     return ::testing::DoubleNear(std::sqrt(share * (whole * whole - 0.0031 * 0.0031)), 1e-12);

@@ -57,8 +57,8 @@ void expect_sound(const Report& report) {
         << chart->id;
     EXPECT_FALSE(chart->title.empty()) << chart->id;
     EXPECT_TRUE(!chart->x.unit.empty() || !chart->x.names.empty()) << chart->id;
-    for (const ChartPanel& panel : chart->panels) {
-      EXPECT_TRUE(!panel.axis.unit.empty() || !panel.axis.names.empty()) << chart->id;
+    for (const ChartAxis& axis : chart->panels) {
+      EXPECT_TRUE(!axis.unit.empty() || !axis.names.empty()) << chart->id;
     }
     for (const ChartLine& line : chart->lines) {
       EXPECT_EQ(line.x.size(), line.y.size()) << chart->id << " " << line.name;
@@ -68,7 +68,7 @@ void expect_sound(const Report& report) {
         EXPECT_FALSE(x > chart->x.high + 1e-9) << chart->id << " " << line.name;
       }
     }
-    for (const ChartBars& bars : chart->bars) EXPECT_EQ(bars.values.size(), chart->panels[0].axis.names.size());
+    for (const ChartBars& bars : chart->bars) EXPECT_EQ(bars.values.size(), chart->panels[0].names.size());
   }
   EXPECT_FALSE(report.lead.empty());
 }
@@ -185,8 +185,8 @@ TEST(StudyReport, BarsAreRankedBySize) {
   // twice load, mass, stiffness and damping leave the motion as it is.
   const Chart& chart = chart_of(report, "elasticity-peak-to-peak");
   double sum = 0;
-  for (std::size_t k = 0; k < chart.panels[0].axis.names.size(); ++k) {
-    const std::string& name = chart.panels[0].axis.names[k];
+  for (std::size_t k = 0; k < chart.panels[0].names.size(); ++k) {
+    const std::string& name = chart.panels[0].names[k];
     if (name == "load" || name == "mass" || name == "stiffness" || name == "damping") sum += chart.bars[0].values[k];
   }
   EXPECT_NEAR(sum, 0, 2e-3);

@@ -234,7 +234,7 @@ TEST(Twin, ReportDrawsBothMotions) {
   const auto* differences = item_of<Chart>(report, "twin-differences");
   ASSERT_NE(differences, nullptr);
   ASSERT_EQ(differences->lines.size(), 1u);
-  EXPECT_EQ(differences->panels[0].axis.names.size(), result.twin.measures.size());
+  EXPECT_EQ(differences->panels[0].names.size(), result.twin.measures.size());
   for (std::size_t k = 0; k < differences->lines[0].x.size(); ++k) {
     const auto measure = static_cast<std::size_t>(differences->lines[0].y[k]);
     EXPECT_DOUBLE_EQ(differences->lines[0].x[k], result.twin.measures[measure].simulated[0].difference);

@@ -1,4 +1,4 @@
-#include "workbench/choice_json.hpp"
+#include "workbench/session_json.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

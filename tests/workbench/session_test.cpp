@@ -17,7 +17,7 @@
 #include "lagging.hpp"
 #include "tribofit/execution/stop.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "workbench/choice_json.hpp"
+#include "workbench/session_json.hpp"
 
 namespace tribofit {
 namespace {

@@ -42,6 +42,7 @@ struct ChartAxis {
   bool falling = false;                 ///< from high to low
   std::vector<std::string> names = {};  ///< of the values 0, 1, 2 ... where the axis counts things
   int digits = 5;                       ///< of the numbers over this axis; times need more
+  double part = 1;                      ///< height of a panel beside that of the others
 };
 
 /// A line or points; with `low` and `high` also what is uncertain about it.
@@ -108,18 +109,12 @@ struct HeatMap {
   bool contours = false;   ///< lines of equal value, with their values
 };
 
-/// Charts one above the other over one abscissa.
-struct ChartPanel {
-  ChartAxis axis = {};  ///< the ordinate
-  double part = 1;      ///< height beside that of the others
-};
-
 struct Chart {
   std::string id = {};  ///< name of its file and anchor; letters, digits and '-'
   std::string title = {};
   std::string note = {};  ///< what to look at, a sentence or two
   ChartAxis x = {};
-  std::vector<ChartPanel> panels = std::vector<ChartPanel>(1);  ///< from top to bottom
+  std::vector<ChartAxis> panels = std::vector<ChartAxis>(1);  ///< ordinates, from top to bottom
   std::vector<ChartLine> lines = {};
   std::vector<ChartBars> bars = {};
   std::optional<HeatMap> map = {};  ///< under the lines

@@ -35,7 +35,6 @@ struct WorkbenchRung {
   FitDetail detail = FitDetail::quick;  ///< how finely it has been fitted so far
   Fit fit;
   std::string command;  ///< that fits the same model; at full detail it gives the same numbers
-  double seconds = 0;   ///< that the fit took
 };
 
 /// What a page shows of a rung.

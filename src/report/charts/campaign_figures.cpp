@@ -34,7 +34,7 @@ class MeansChart {
   }
   /// What is added from now on stands in a panel of its own.
   MeansChart& panel(std::string quantity, std::string unit) {
-    chart_.panels.push_back({.axis = {.quantity = std::move(quantity), .unit = std::move(unit)}});
+    chart_.panels.push_back({.quantity = std::move(quantity), .unit = std::move(unit)});
     return *this;
   }
   /// value: of a group, nothing where there is none.
@@ -151,7 +151,7 @@ Chart panels_of_groups(const DrawnCampaign& campaign, const char* id, const char
       chart.lines.pop_back();
       continue;
     }
-    chart.panels.push_back({.axis = y});
+    chart.panels.push_back(y);
     from.push_back(fmt::format("{} ({})", conditions, drawn->run));
   }
   if (!from.empty()) chart.note = fmt::format("From top to bottom: {}.", fmt::join(from, "; "));
@@ -294,7 +294,7 @@ Chart scatter_chart(const DrawnCampaign& campaign, const std::string& law) {
         line.high.back() = value.upper95;
       }
     }
-    if (!name.empty()) chart.panels.push_back({.axis = {.quantity = with_subscript(name), .unit = unit}});
+    if (!name.empty()) chart.panels.push_back({.quantity = with_subscript(name), .unit = unit});
   }
   chart.height = 110 + 130 * static_cast<int>(chart.panels.size());
   return chart;

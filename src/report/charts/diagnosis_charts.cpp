@@ -19,7 +19,7 @@ Chart errors_chart(const DiagnosedTraces& result, const char* id, const char* ti
   return {.id = id,
           .title = title,
           .note = note,
-          .panels = {{.axis = {.quantity = "held-out error", .unit = unit, .from_zero = true}}},
+          .panels = {{.quantity = "held-out error", .unit = unit, .from_zero = true}},
           .marks = {{result.diagnosis.floor_rmse, false, Dash::dashed, "noise floor"}}};
 }
 
@@ -65,7 +65,7 @@ Chart where_chart(const DiagnosedTraces& result) {
               .height = 150 + 40 * static_cast<int>(std::max<std::size_t>(3, d.where.size() + 1)),
               .half = true};
   if (d.ladder.empty()) return chart;
-  ChartAxis& names = chart.panels[0].axis;
+  ChartAxis& names = chart.panels[0];
   ChartBars before{law_text(d), {}, Colour::blue, false}, after{"final model", {}, Colour::red, true};
   const Rung &first = d.ladder.front(), &last = d.ladder.back();
   for (auto share = d.where.rbegin(); share != d.where.rend(); ++share) {  // the largest on top
@@ -100,7 +100,7 @@ Chart candidates_chart(const DiagnosedTraces& result) {
                              "Sorted by the error. Each was judged last at a rung of its own, so errors of different "
                              "statuses need not compare: what is superseded helps alone but not beside what was added, "
                              "even where its error here is lower. Bars are one standard error, from cycle to cycle.");
-  chart.panels[0].axis.digits = 6;
+  chart.panels[0].digits = 6;
   for (std::size_t k = 0; k < kStatusStrokes.size(); ++k) {
     chart.line(std::string(status_text(static_cast<EffectStatus>(k))), kStatusStrokes[k]).bars = true;
   }

@@ -113,13 +113,13 @@ Chart friction_chart(const DrawnTrace& d, const char* note, bool logarithmic) {
           .title = "Friction over relative velocity",
           .note = note,
           .x = {.quantity = "relative velocity |v_{r}|", .unit = "mm/s", .logarithmic = logarithmic},
-          .panels = {{friction_axis(d.trace.motion), 1.35}},
+          .panels = {friction_axis(d.trace.motion, 1.35)},
           .height = 560};
 }
 
 /// Below it what the laws leave.
 void add_residual_panel(Chart& chart) {
-  chart.panels.push_back({{"residual / noise floor", "1"}});
+  chart.panels.push_back({"residual / noise floor", "1"});
   chart.marks.push_back({2, false, Dash::dotted, "+2 noise floors", 1});
   chart.marks.push_back({-2, false, Dash::dotted, "−2 noise floors", 1});
 }

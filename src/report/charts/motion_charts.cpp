@@ -25,7 +25,7 @@ Chart portrait_plane(std::string id, std::string title, double disc_velocity) {
   return {.id = std::move(id),
           .title = std::move(title),
           .x = {.quantity = "displacement of the block", .unit = "mm"},
-          .panels = {{.axis = {.quantity = "velocity of the block", .unit = "mm/s"}}},
+          .panels = {{.quantity = "velocity of the block", .unit = "mm/s"}},
           .marks = {disc_mark(disc_velocity)},
           .height = 420};
 }
@@ -37,7 +37,7 @@ void add_loop(const DrawnMotion& m, const Stroke& stroke, Chart& chart, bool clo
 }
 
 void add_over_time(const DrawnMotion& m, const ChartAxis& friction, const Stroke& stroke, Chart& chart) {
-  chart.panels = {{{"velocity v_{b}", "mm/s"}}, {friction}, {{"displacement", "mm"}}};
+  chart.panels = {{"velocity v_{b}", "mm/s"}, friction, {"displacement", "mm"}};
   std::size_t panel = 0;
   for (const auto* values : {&m.velocity, &m.friction, &m.displacement}) {
     chart.lines.push_back({m.name, m.time, *values, stroke});

@@ -44,7 +44,7 @@ Chart whole_chart(const RateStateAnalysis& analysis) {
                   "its speed changes.",
               .x = {"displacement of the load point", "um"},
               .height = 420};
-  chart.panels[0].axis = {"friction", unit_of_friction(analysis)};
+  chart.panels[0] = {"friction", unit_of_friction(analysis)};
   for (const RateStateCurve& curve : analysis.curves) {
     add_step(analysis, curve, 0, -1e300, 1e300, chart);
     const VelocityStep& step = analysis.steps[curve.step];

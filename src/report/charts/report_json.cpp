@@ -66,10 +66,7 @@ bool is_for_page(const Part& part) {
 constexpr auto description(const ChartAxis*) {
   return described("quantity", &ChartAxis::quantity, "unit", &ChartAxis::unit, "low", &ChartAxis::low, "high",
                    &ChartAxis::high, "from_zero", &ChartAxis::from_zero, "logarithmic", &ChartAxis::logarithmic,
-                   "falling", &ChartAxis::falling, "names", &ChartAxis::names);
-}
-constexpr auto description(const ChartPanel*) {
-  return described("axis", &ChartPanel::axis, "part", &ChartPanel::part);
+                   "falling", &ChartAxis::falling, "names", &ChartAxis::names, "part", &ChartAxis::part);
 }
 constexpr auto description(const Stroke*) {
   return described("colour", named(&Stroke::colour, kColours), "dash", named(&Stroke::dash, kDashes), "symbol",

@@ -154,7 +154,7 @@ inline Stroke marked(std::size_t k, bool joined = true) {
 /// A chart of one panel, without lines yet, that stands beside its neighbour.
 inline Chart half_chart(std::string id, std::string title, ChartAxis x, ChartAxis y) {
   Chart chart{.id = std::move(id), .title = std::move(title), .x = std::move(x), .half = true};
-  chart.panels[0].axis = std::move(y);
+  chart.panels[0] = std::move(y);
   return chart;
 }
 

@@ -52,7 +52,7 @@ Chart window_chart(const DrawnTrace& d, const Window& w, bool with_models) {
     return of_block ? disc(i) - v_r : v_r;
   };
   Chart chart{.x = {.quantity = "time", .unit = "s", .digits = chart_detail.time_digits},
-              .panels = {{friction_axis(motion), 1.3}, {{of_block ? "v_{b}" : "v_{r}", "mm/s"}}}};
+              .panels = {friction_axis(motion, 1.3), {of_block ? "v_{b}" : "v_{r}", "mm/s"}}};
   add_drawn(d, w, "measured", in(motion.friction), kMeasured, 0, chart);
   for (std::size_t k = 0; with_models && k < d.models.size(); ++k) {
     add_drawn(d, w, curve_name(*d.models[k]), in(d.predictions[k]), model_stroke(k), 0, chart).shown = k < 2;
@@ -197,9 +197,9 @@ std::size_t DrawnTrace::bins(std::size_t whole) const {
   return std::max(chart_detail.least, static_cast<std::size_t>(share * static_cast<double>(whole)));
 }
 
-ChartAxis friction_axis(const Motion& motion) {
+ChartAxis friction_axis(const Motion& motion, double part) {
   const bool force = friction_unit(motion) == "N";
-  return {force ? "friction force" : "friction μ", force ? "N" : "1"};
+  return {.quantity = force ? "friction force" : "friction μ", .unit = force ? "N" : "1", .part = part};
 }
 
 std::vector<Chart> cycle_charts(const DrawnTrace& d) {

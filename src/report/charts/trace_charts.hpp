@@ -47,7 +47,7 @@ std::vector<Chart> error_charts(const DrawnTrace& drawn);
 /// Profile likelihoods of the parameters of a fit, where they were asked for.
 std::vector<Chart> profile_charts(const Fit& fit, const Motion& motion, const std::string& id);
 
-/// Axis of friction levels.
-ChartAxis friction_axis(const Motion& motion);
+/// Axis of friction levels; part: see ChartAxis.
+ChartAxis friction_axis(const Motion& motion, double part = 1);
 
 }  // namespace tribofit

@@ -49,7 +49,7 @@ const nth = (letter, panel) => (panel ? `${letter}${panel + 1}` : letter);
 
 /** Hover text: both values with their units, and the line. */
 function hoverOf(chart, panel, bars) {
-  const y = chart.panels[panel].axis, quantity = marked(y.quantity);
+  const y = chart.panels[panel], quantity = marked(y.quantity);
   const x = chart.x.names.length ? "%{customdata}" : `${marked(chart.x.quantity)} %{x}${plain(unitOf(chart.x))}`;
   return { hovertemplate: `${x}<br>${quantity} %{y:.5g}${plain(unitOf(y))}${bars ? "<br>%{text}" : ""}` +
     "<extra>%{fullData.name}</extra>" };
@@ -97,7 +97,7 @@ function tracesOfLine(chart, line, listed) {
 }
 
 function tracesOfBars(chart, bars) {
-  const y = chart.panels[0].axis;
+  const y = chart.panels[0];
   return { type: "bar", orientation: "h", name: plain(bars.name), legendgroup: bars.name, x: bars.values,
     y: bars.values.map((_, k) => k), customdata: y.names.map(plain),
     marker: { color: styles.colours[bars.colour], line: { color: styles.colours.black, width: 1 },
@@ -106,7 +106,7 @@ function tracesOfBars(chart, bars) {
 }
 
 function tracesOfMap(chart) {
-  const map = chart.map, x = chart.x, y = chart.panels[0].axis;
+  const map = chart.map, x = chart.x, y = chart.panels[0];
   const colours = map.diverging ? styles.diverging : styles.heat;
   const cells = { type: "heatmap", name: plain(map.quantity), x: map.x, y: map.y, z: map.z, zmin: map.low ?? undefined, zmax: map.high ?? undefined,
     zauto: map.low === null, colorscale: colours.map((colour, k) => [k / (colours.length - 1), colour]), hoverongaps: false,
@@ -145,7 +145,7 @@ function annotationsOf(chart) {
   const all = chart.lines.flatMap((line) => line.x).filter(Number.isFinite).map((x) => along(chart.x, x));
   const low = Math.min(...all), high = Math.max(...all);
   const common = { showarrow: false, font: { size: 11 }, bgcolor: styles.halo };
-  const yOf = (panel, value) => ({ yref: nth("y", panel), y: along(chart.panels[panel].axis, value) });
+  const yOf = (panel, value) => ({ yref: nth("y", panel), y: along(chart.panels[panel], value) });
   // Of words at upright marks, one below the other; on a narrow screen below those at a level mark of the panel.
   let rows = innerWidth < 500 && named.some((mark) => !mark.upright && !mark.panel) ? 1.4 : 0;
   const words = named.map((mark) => {
@@ -180,7 +180,7 @@ function layoutOf(chart) {
   let top = 1;
   chart.panels.forEach((panel, k) => {
     const height = (free * panel.part) / whole;
-    layout[nth("yaxis", k)] = axisOf(panel.axis, { domain: [Math.max(0, top - height), top] });
+    layout[nth("yaxis", k)] = axisOf(panel, { domain: [Math.max(0, top - height), top] });
     top -= height + gap;
   });
   if (matchMedia("(pointer: coarse)").matches) layout.dragmode = false; // a finger scrolls the page
@@ -190,17 +190,17 @@ function layoutOf(chart) {
 /** Title and names below a chart, as its width has room for them: names that do not fit stand upright. */
 function fitBelow(layout, chart, width) {
   const longest = (axis) => letterWidth * Math.max(0, ...axis.names.map((name) => plain(name).length));
-  const room = width - layout.margin.l - layout.margin.r - Math.max(...chart.panels.map((panel) => longest(panel.axis)));
+  const room = width - layout.margin.l - layout.margin.r - Math.max(...chart.panels.map(longest));
   layout.xaxis.title.text = marked(brokenTitle(titleOf(chart.x), room));
   if (chart.x.names.length && longest(chart.x) + 12 > room / layout.xaxis.ticktext.length) layout.xaxis.tickangle = -90;
 }
 
 /** The numbers of a chart: a row a point. */
 function rowsOf(chart) {
-  const title = (axis) => unmarked(titleOf(axis)), y = chart.panels[0].axis, none = [null, null];
+  const title = (axis) => unmarked(titleOf(axis)), y = chart.panels[0], none = [null, null];
   const x = (value) => (chart.x.names.length ? chart.x.names[Math.round(value)] : value);
   const rows = chart.lines.flatMap((line) => line.x.map((at, k) =>
-    [line.name, x(at), title(chart.panels[line.panel].axis), line.y[k] ?? null, line.low[k] ?? null, line.high[k] ?? null]));
+    [line.name, x(at), title(chart.panels[line.panel]), line.y[k] ?? null, line.low[k] ?? null, line.high[k] ?? null]));
   for (const bars of chart.bars) rows.push(...bars.values.map((value, k) => [bars.name, y.names[k], title(chart.x), value, ...none]));
   if (chart.map) {
     chart.map.z.forEach((row, i) => rows.push(...row.map((z, k) =>

@@ -29,7 +29,7 @@ Extent extent_of_abscissa(const Chart& chart) {
 }
 
 Extent extent_of_panel(const Chart& chart, std::size_t panel, const Scale& x) {
-  Extent extent(chart.panels[panel].axis.logarithmic);
+  Extent extent(chart.panels[panel].logarithmic);
   for (const ChartLine& line : chart.lines) {
     for (std::size_t k = 0; line.shown && line.panel == panel && k < line.x.size(); ++k) {
       const double part = x.part(line.x[k]);
@@ -120,9 +120,9 @@ std::vector<double> heights_of(const Chart& chart) {
   const double gaps = sizes.between_panels * static_cast<double>(chart.panels.size() - 1);
   const double all = sizes.pixel * chart.height - 2 * sizes.text_line - sizes.tic_gap - 2 * sizes.edge - gaps;
   double parts = 0;
-  for (const ChartPanel& panel : chart.panels) parts += panel.part;
+  for (const ChartAxis& panel : chart.panels) parts += panel.part;
   std::vector<double> heights;
-  for (const ChartPanel& panel : chart.panels) {
+  for (const ChartAxis& panel : chart.panels) {
     heights.push_back(std::max(sizes.least_panel, parts > 0 ? all * panel.part / parts : 0));
   }
   return heights;
@@ -254,7 +254,7 @@ PictureLayout layout_of(const Chart& chart) {
     const int most = std::max(3, static_cast<int>(heights[k] / 6));
     return scale_of(axis, extent_of_panel(chart, k, layout.x), chart.map ? 0 : 0.05, most);
   };
-  for (std::size_t k = 0; k < heights.size(); ++k) layout.y.push_back(scale_up(k, chart.panels[k].axis));
+  for (std::size_t k = 0; k < heights.size(); ++k) layout.y.push_back(scale_up(k, chart.panels[k]));
   if (chart.map) {
     const HeatMap& map = *chart.map;
     Extent extent(false);
@@ -271,7 +271,7 @@ PictureLayout layout_of(const Chart& chart) {
   keep_last_tic_inside(layout);
   layout.upright_words = place_upright_words(chart, layout.x, layout.panels.front().width);
   if (!layout.upright_words.empty()) {
-    layout.y[0] = scale_up(0, with_room_for_words(chart.panels[0].axis, layout.y[0], layout, heights[0]));
+    layout.y[0] = scale_up(0, with_room_for_words(chart.panels[0], layout.y[0], layout, heights[0]));
     place_across(chart, layout, heights);
     keep_last_tic_inside(layout);
   }

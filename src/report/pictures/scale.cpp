@@ -6,8 +6,6 @@
 #include <cstddef>
 #include <utility>
 
-#include "report/pictures/sizes.hpp"
-
 namespace tribofit {
 namespace {
 

@@ -39,7 +39,7 @@ Chart map_chart(const StudiedMachine& studied, const MapRequest& request, const 
     edge.add(at_x / across.si, at_y / up.si);
   }
   const double x = value_of(studied.machine, across.name) / across.si, y = value_of(studied.machine, up.name) / up.si;
-  if (x >= chart.x.low && x <= chart.x.high && y >= chart.panels[0].axis.low && y <= chart.panels[0].axis.high) {
+  if (x >= chart.x.low && x <= chart.x.high && y >= chart.panels[0].low && y <= chart.panels[0].high) {
     chart.lines.push_back({"the machine as it is", {x}, {y}, dots(Colour::red, Symbol::cross, 11)});
   }
   return chart;

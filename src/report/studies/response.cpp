@@ -44,7 +44,7 @@ Chart curve_chart(const Response& study) {
               .note = fmt::format("A(omega) = F/sqrt((k - m omega^2)^2 + (c omega)^2) with F = {} N.",
                                   significant(study.force, 4)),
               .x = {.quantity = "frequency", .unit = "Hz", .logarithmic = true},
-              .panels = {{.axis = {.quantity = "amplitude of the displacement", .unit = "mm", .logarithmic = true}}},
+              .panels = {{.quantity = "amplitude of the displacement", .unit = "mm", .logarithmic = true}},
               .lines = {{"A(omega)", study.frequency, in_unit(study.amplitude, kMillimetre), stroke_of(0)}},
               .height = 400};
   if (study.frequency.empty() || study.amplitude.empty()) return chart;

@@ -65,7 +65,7 @@ Chart bar_chart(const std::vector<Sensitivity>& study, std::size_t measure) {
   const MeasureInfo& info = measures()[measure];
   Chart chart = half_chart("elasticity-" + info.name, "What moves the " + info.name,
                            {"change of the " + info.name + " for 1 % of the number", "%"}, {});
-  ChartAxis& names = chart.panels[0].axis;
+  ChartAxis& names = chart.panels[0];
   names.falling = true;  // the largest stands on top
   ChartBars bars{info.name, {}};
   for (const std::size_t i : ranked(study, measure)) {

@@ -180,7 +180,7 @@ Chart over_speed(const StudiedMachine& studied, const SpeedStudy& study, const c
   for (const std::string name : names) {
     const MeasureInfo& measure = measure_named(name);
     const std::size_t panel = chart.panels.size();
-    chart.panels.push_back({{.quantity = measure.name, .unit = measure.unit, .from_zero = true}});
+    chart.panels.push_back({.quantity = measure.name, .unit = measure.unit, .from_zero = true});
     for (const Way& way : ways_of(study)) add_way(study, way, measure, panel, chart);
     if (const Estimate* measured = measured_value(studied, measure)) {
       ChartLine& line = chart.line("measured", dots(Colour::black, Symbol::cross, 9), panel);
@@ -201,7 +201,7 @@ Chart growth_chart(const SpeedStudy& study) {
               .title = "Growth of a small vibration about steady sliding",
               .note = "Above zero steady sliding is unstable: a vibration grows until it sticks or is held by the law.",
               .x = speed_axis(study),
-              .panels = {{.axis = {.quantity = "growth rate", .unit = "1/s"}}},
+              .panels = {{.quantity = "growth rate", .unit = "1/s"}},
               .lines = {{"growth rate", in_unit(study.velocity, kMillimetre), study.growth_rate, stroke_of(0)}},
               .marks = {{.dash = Dash::solid}}};
   mark_critical(study, true, chart);

@@ -36,4 +36,16 @@ std::vector<std::string> arguments_of(const WorkbenchChoice& choice);
 /// Both are the same choice.
 bool same(const WorkbenchChoice& a, const WorkbenchChoice& b);
 
+/// What the server says of a session, as JSON.
+
+/// Trace, laws, catalogue and choice to begin with.
+Json begin_json(const WorkbenchSession& session);
+
+/// {"rung", "rungs", "turn", "report"}
+Json picture_json(const WorkbenchPicture& picture, double turn, const WorkbenchSession& session);
+
+/// A law over |v_r| [mm/s].
+Json curve_json(const Curve& curve);
+Json diagnosis_json(const WorkbenchDiagnosis& diagnosis);
+
 }  // namespace tribofit::workbench
