@@ -1,5 +1,5 @@
-// When charts are drawn: words come first, then the charts in view, then those within a screen of it; others wait until they
-// come near. A page that changes under the hand shows words and charts in view together, in one frame.
+// When charts are drawn: words come first, then the charts in view, then the rest, a few at a time. A page that changes under
+// the hand shows words and charts in view together, in one frame; those farther than a screen wait until they come near.
 
 let waiting = []; // charts not drawn yet, or not as they are now
 let isDrawing = false;
@@ -39,14 +39,15 @@ function isWithin(item, margin) {
   return item.plot.isConnected && box.bottom > -margin && box.top < innerHeight + margin;
 }
 
-const waitingWithin = (margin) => waiting.filter((item) => isWithin(item, margin));
+const inView = () => waiting.filter((item) => isWithin(item, 0));
+const due = () => waiting.filter((item) => isWithin(item, changesUnderHand ? innerHeight : Infinity));
 
 function drawWaiting() {
-  const inView = waitingWithin(0);
+  const first = inView(), few = 3;
   try {
-    (inView.length > 0 ? inView : waitingWithin(innerHeight)).forEach(draw);
+    (first.length > 0 ? first : due().slice(0, few)).forEach(draw);
   } finally {
-    isDrawing = waitingWithin(innerHeight).length > 0;
+    isDrawing = due().length > 0;
     if (isDrawing) setTimeout(drawWaiting, 0);
     else document.documentElement.dataset.drawn = "all";
   }
@@ -54,5 +55,5 @@ function drawWaiting() {
 
 /** A screen ahead: who scrolls finds the chart drawn. */
 const comingNear = new IntersectionObserver(() => {
-  if (waitingWithin(innerHeight).length > 0) beginDrawing();
+  if (due().length > 0) beginDrawing();
 }, { rootMargin: "100% 0px" });
