@@ -1,7 +1,6 @@
 // Times pages in Chromium as a person sees them. usage:
 // node bench.mjs DRIVER CHROMIUM open FILE [TIMES]          a report: until its words are painted, until it answers (the
-//                                                           charts in view are drawn by then), and until those near are
-//                                                           drawn
+//                                                           charts in view are drawn by then), and until all are drawn
 // node bench.mjs DRIVER CHROMIUM change ADDRESS [CHANGES]   the workbench: from the click on an effect (a third one beside two
 //                                                           others) to the answer and the charts in view shown, and to the
 //                                                           whole page updated: the charts near the view too, on the page as
@@ -34,7 +33,7 @@ async function open(address, times) {
     whole.push(performance.now() - began);
     await page.close();
   }
-  console.log(`words painted after ${show(painted)}, answers after ${show(answered)}, charts near the view drawn after ${show(whole)}; ${times} times`);
+  console.log(`words painted after ${show(painted)}, answers after ${show(answered)}, every chart drawn after ${show(whole)}; ${times} times`);
 }
 
 /** Clicks the box of an effect; resolves, in the page, with when its answer was shown and when all was drawn [ms]. */
