@@ -11,7 +11,7 @@
 #include "means_options.hpp"
 #include "results.hpp"
 #include "tribofit/pipeline.hpp"
-#include "tribofit/report/plan.hpp"
+#include "tribofit/report/json.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;

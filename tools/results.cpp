@@ -11,7 +11,7 @@
 #include "tribofit/ingest/output_tables.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/output/digits.hpp"
-#include "tribofit/report/page.hpp"
+#include "tribofit/report/report.hpp"
 #include "tribofit/report/terminal.hpp"
 
 using namespace tribofit;

@@ -108,21 +108,27 @@ constexpr auto description(const ResultFit::Correlated*) {
   return described("parameters", &ResultFit::Correlated::parameters, "value", &ResultFit::Correlated::value);
 }
 
-/// What a fit leaves; see ErrorFigures.
-inline constexpr auto error_members =
-    described("rmse", &ResultFit::rmse, "mean_relative", &ResultFit::mean_relative, "max_relative",
-              &ResultFit::max_relative, "held_out_rmse", &ResultFit::held_out_rmse);
+constexpr auto description(const ErrorFigures*) {
+  using E = ErrorFigures;
+  return described("rmse", &E::rmse, "mean_relative", &E::mean_relative, "max_relative", &E::max_relative,
+                   "held_out_rmse", &E::held_out_rmse);
+}
+
+/// The parts of the noise floor.
+constexpr auto description(const Floor*) {
+  return described("noise", &Floor::noise, "scatter", &Floor::scatter, "slow_noise", &Floor::slow_noise, "source",
+                   &Floor::source);
+}
 
 constexpr auto description(const ResultFit*) {
   using F = ResultFit;
-  return described(
-      "law", &F::law, "protocol", &F::protocol, "effects", &F::effects, "effect_names", &F::effect_names, "parameters",
-      &F::parameters, "error", error_members, "floor_rmse", &F::floor_rmse, "converged", &F::converged, "conditional",
-      &F::conditional, "messages", &F::messages, "floor",
-      described("noise", &F::noise, "scatter", &F::scatter, "slow_noise", &F::slow_noise, "source", &F::floor_source),
-      "explained", &F::explained, "stick_creep_rmse_mm_s", in(kMillimetre, &F::stick_creep), "fastest_mm_s",
-      in(kMillimetre, &F::fastest), "samples", &F::samples, "cycles", &F::cycles, "correlations", &F::correlations,
-      "covariance", &F::covariance, "degrees_of_freedom", &F::degrees_of_freedom);
+  return described("law", &F::law, "protocol", &F::protocol, "effects", &F::effects, "effect_names", &F::effect_names,
+                   "parameters", &F::parameters, "error", &F::error, "floor_rmse", within(&F::floor, &Floor::rmse),
+                   "converged", &F::converged, "conditional", &F::conditional, "messages", &F::messages, "floor",
+                   &F::floor, "explained", &F::explained, "stick_creep_rmse_mm_s", in(kMillimetre, &F::stick_creep),
+                   "fastest_mm_s", in(kMillimetre, &F::fastest), "samples", &F::samples, "cycles", &F::cycles,
+                   "correlations", &F::correlations, "covariance", &F::covariance, "degrees_of_freedom",
+                   &F::degrees_of_freedom);
 }
 
 inline constexpr auto trace_members =

@@ -16,8 +16,8 @@ namespace {
 /// ln(held-out error of `second` over that of `first`), joint protocol; nothing where either is not known.
 std::optional<double> advantage(const RunResult& run, const std::string& first, const std::string& second) {
   const ResultFit *a = run.fit(first, to_string(Protocol::joint)), *b = run.fit(second, to_string(Protocol::joint));
-  if (a == nullptr || b == nullptr || !(a->held_out_rmse > 0) || !(b->held_out_rmse > 0)) return std::nullopt;
-  return std::log(b->held_out_rmse / a->held_out_rmse);
+  if (a == nullptr || b == nullptr || !(a->error.held_out_rmse > 0) || !(b->error.held_out_rmse > 0)) return std::nullopt;
+  return std::log(b->error.held_out_rmse / a->error.held_out_rmse);
 }
 
 /// Two-sided p-value of the mean over all runs against the scatter of repeats: the conditions are those that were

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <vector>
 
 #include "whole_folder.hpp"
 
@@ -20,8 +18,16 @@ class CsvLine {
   /// digits: of numbers; 0: to the last.
   explicit CsvLine(int digits = 0) : digits_(digits) {}
 
+  template <class... Cells>
+  void add(const Cells&... cells) {
+    (add_cell(cells), ...);
+  }
+  /// The line with its line break; what is added then is the next one.
+  std::string take();
+
+ private:
   template <class Cell>
-  void add(const Cell& cell) {
+  void add_cell(const Cell& cell) {
     if constexpr (std::is_same_v<Cell, nlohmann::ordered_json>) {
       add_values(cell);
     } else if constexpr (std::is_floating_point_v<Cell>) {
@@ -32,10 +38,6 @@ class CsvLine {
       add_text(cell);
     }
   }
-  /// The line with its line break; what is added then is the next one.
-  std::string take();
-
- private:
   void begin_cell();
   void add_number(double value);
   void add_text(std::string_view text);
@@ -49,7 +51,7 @@ class CsvLine {
 template <class... Cells>
 std::string csv_line(const Cells&... cells) {
   CsvLine line;
-  (line.add(cells), ...);
+  line.add(cells...);
   return line.take();
 }
 
@@ -57,40 +59,20 @@ std::string csv_line(const Cells&... cells) {
 /// ends, NAME_lower and NAME_upper.
 std::string csv_names(const nlohmann::ordered_json& object);
 
-/// A column of a table: its name, and its cell of a row, which a member or a function gives. One that gives a JSON
-/// object or list has as many names, with commas.
-template <class Row>
-struct CsvColumn {
-  template <class Cell>
-  CsvColumn(std::string header, Cell cell)
-      : name(std::move(header)), add([cell](CsvLine& line, const Row& row) { line.add(std::invoke(cell, row)); }) {}
-
-  std::string name;
-  std::function<void(CsvLine&, const Row&)> add;
-};
-
 /// Digits of what was measured: more than any instrument has.
 constexpr int kMeasuredDigits = 10;
 
-/// A file of a folder that begins with a header.
-template <class Row>
-class CsvTable {
- public:
-  CsvTable(WholeFolder& folder, const std::string& name, std::vector<CsvColumn<Row>> columns, int digits = 0)
-      : file_(folder.add(name)), columns_(std::move(columns)), line_(digits) {
-    std::string header;
-    for (const CsvColumn<Row>& column : columns_) header += (header.empty() ? "" : ",") + column.name;
-    file_.write(header + "\n");
+/// Writes a file of a folder: the names of the cells, then a line a row, which `row_of` gives as an object; that of row
+/// 0 has the names, even where there are no rows. digits: of numbers; 0: to the last.
+template <class RowOf>
+void write_rows(WholeFolder& files, const std::string& name, std::size_t rows, const RowOf& row_of, int digits = 0) {
+  WholeFile& file = files.add(name);
+  file.write(csv_names(row_of(0)) + "\n");
+  CsvLine line(digits);
+  for (std::size_t k = 0; k < rows; ++k) {
+    line.add(row_of(k));
+    file.write(line.take());
   }
-  void row(const Row& row) {
-    for (const CsvColumn<Row>& column : columns_) column.add(line_, row);
-    file_.write(line_.take());
-  }
-
- private:
-  WholeFile& file_;
-  std::vector<CsvColumn<Row>> columns_;
-  CsvLine line_;
-};
+}
 
 }  // namespace tribofit

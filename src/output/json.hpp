@@ -48,12 +48,12 @@ inline void make_room(Json& json, std::size_t more) {
 inline void add_members(Json&) {}
 /// Adds names and values, one after the other; numbers that are not known become null.
 template <class Value, class... More>
-void add_members(Json& json, const char* name, Value&& value, More&&... more) {
+void add_members(Json& json, std::string name, Value&& value, More&&... more) {
   make_room(json, 1 + sizeof...(more) / 2);
   if constexpr (std::is_same_v<std::decay_t<Value>, double>) {
-    json[name] = number(value);
+    json[std::move(name)] = number(value);
   } else {
-    json[name] = std::forward<Value>(value);
+    json[std::move(name)] = std::forward<Value>(value);
   }
   add_members(json, std::forward<More>(more)...);
 }

@@ -27,7 +27,7 @@ Json fit_json(const ResultFit& fit) {
                   text_or_null(p.effect), "systematic_error", positive_or_null(p.systematic), "at_bound", p.at_bound);
   };
   return object("law", fit.law, "protocol", fit.protocol, "effects", fit.effects, "parameters",
-                list_of(fit.parameters, parameter), "error", written(error_members, fit), "floor_rmse", fit.floor_rmse,
+                list_of(fit.parameters, parameter), "error", json_of(fit.error), "floor_rmse", fit.floor.rmse,
                 "converged", fit.converged);
 }
 
@@ -60,11 +60,11 @@ void add_fit(const ResultFit& fit, const std::string& friction_unit, Json& row) 
     add(p.name + "_std_error", p.unit, p.std_error);
     if (p.systematic > 0) add(p.name + "_systematic_error", p.unit, p.systematic);
   }
-  add("rmse", friction_unit, fit.rmse);
-  add("held_out_rmse", friction_unit, fit.held_out_rmse);
-  add("floor_rmse", friction_unit, fit.floor_rmse);
-  add("mean_relative", "1", fit.mean_relative);
-  add("max_relative", "1", fit.max_relative);
+  add("rmse", friction_unit, fit.error.rmse);
+  add("held_out_rmse", friction_unit, fit.error.held_out_rmse);
+  add("floor_rmse", friction_unit, fit.floor.rmse);
+  add("mean_relative", "1", fit.error.mean_relative);
+  add("max_relative", "1", fit.error.max_relative);
 }
 
 SummaryRow summary_row(const std::string& name, const std::string& file, std::string_view status) {

@@ -298,8 +298,8 @@ std::vector<std::string> run_row(const RunResult& r) {
           mu_s,
           mu_k,
           others,
-          fitted ? significant(best.held_out_rmse, 3) : "",
-          fitted ? significant(best.floor_rmse, 3) : "",
+          fitted ? significant(best.error.held_out_rmse, 3) : "",
+          fitted ? significant(best.floor.rmse, 3) : "",
           r.run.message.empty() ? std::to_string(r.warnings.size()) : r.run.message};
 }
 

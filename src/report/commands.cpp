@@ -6,7 +6,7 @@
 
 #include "terminal_text.hpp"
 #include "tribofit/ingest/spelling.hpp"
-#include "tribofit/report/page.hpp"
+#include "tribofit/report/report.hpp"
 
 namespace tribofit {
 

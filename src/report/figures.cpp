@@ -10,7 +10,7 @@ namespace {
 /// A row of a file: its first cells, which say what it is of, then others.
 template <class... Cells>
 void add_row(WholeFile& file, CsvLine line, const Cells&... cells) {
-  (line.add(cells), ...);
+  line.add(cells...);
   file.write(line.take());
 }
 
@@ -18,8 +18,7 @@ void add_row(WholeFile& file, CsvLine line, const Cells&... cells) {
 template <class First>
 CsvLine first_cells(const First& first, const Json& conditions, int digits = kMeasuredDigits) {
   CsvLine line(digits);
-  line.add(first);
-  line.add(conditions);
+  line.add(first, conditions);
   return line;
 }
 

@@ -10,28 +10,19 @@
 namespace tribofit {
 namespace {
 
-/// What is said of a fit: {0} the law, {1} its held-out error, {2} the noise floor, {3} its error on the cycles that
-/// were fitted, {4} its typical relative error, {5} the held-out error beside the floor.
-const char* sentence_on(FitQuality quality) {
-  switch (quality) {
-    case FitQuality::floor_too_high:
-      return "{0} has a held-out error of {1}, less than the noise floor of {2}: the noise floor is overestimated "
-             "here, so the data do not show whether an effect remains.";
-    case FitQuality::not_transferable:
-      return "{0} does not carry over to held-out cycles: its error there is {1}, and {3} on the cycles it was fitted "
-             "to. Do not rely on its values.";
-    case FitQuality::at_floor:
-      return "{0} describes this trace as well as its noise allows: the held-out error is {1}, the noise floor {2}.";
-    case FitQuality::close:
-      return "{0} is close (typically {4} off), but {5}: a small effect may remain.";
-    case FitQuality::outline:
-      return "{0} describes only the general shape (typical error {4}): {5}. An effect is not modelled.";
-    case FitQuality::poor:
-    case FitQuality::unusable:
-      break;
-  }
-  return "{0} does not describe this trace (typically {4} off): {5}. Do not rely on its values.";
-}
+/// What is said of a fit, in the order of FitQuality: {0} the law, {1} its held-out error, {2} the noise floor, {3} its
+/// error on the cycles that were fitted, {4} its typical relative error, {5} the held-out error beside the floor.
+constexpr std::array<const char*, 7> kSentences = {
+    "",
+    "{0} has a held-out error of {1}, less than the noise floor of {2}: the noise floor is overestimated here, so the "
+    "data do not show whether an effect remains.",
+    "{0} does not carry over to held-out cycles: its error there is {1}, and {3} on the cycles it was fitted to. Do "
+    "not "
+    "rely on its values.",
+    "{0} describes this trace as well as its noise allows: the held-out error is {1}, the noise floor {2}.",
+    "{0} is close (typically {4} off), but {5}: a small effect may remain.",
+    "{0} describes only the general shape (typical error {4}): {5}. An effect is not modelled.",
+    "{0} does not describe this trace (typically {4} off): {5}. Do not rely on its values."};
 
 std::string verdict_on(const Fit& fit, const std::string& unit) {
   const auto level = [&](double value) { return significant(value, 3) + unit_behind(unit); };
@@ -44,7 +35,7 @@ std::string verdict_on(const Fit& fit, const std::string& unit) {
   } else if (const double ratio = over_floor(fit); std::isfinite(ratio)) {
     remains += fmt::format(", {} times the noise floor of {}", significant(ratio, 2), floor);
   }
-  return fmt::format(fmt::runtime(sentence_on(quality_of(fit))), name, held_out, floor, level(fit.error.rmse),
+  return fmt::format(fmt::runtime(style_of(quality_of(fit), kSentences)), name, held_out, floor, level(fit.error.rmse),
                      percent(fit.error.mean_relative), remains);
 }
 

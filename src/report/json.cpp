@@ -83,15 +83,8 @@ ResultFit result_of(const Fit& fit, const Motion& motion) {
   add_parameters(fit.parameters, fit.correlations, motion, out);
   out.covariance = shown_covariance(fit);
   out.degrees_of_freedom = fit.degrees_of_freedom;
-  out.rmse = fit.error.rmse;
-  out.held_out_rmse = fit.error.held_out_rmse;
-  out.mean_relative = fit.error.mean_relative;
-  out.max_relative = fit.error.max_relative;
-  out.floor_rmse = fit.floor.rmse;
-  out.noise = fit.floor.noise;
-  out.scatter = fit.floor.scatter;
-  out.slow_noise = fit.floor.slow_noise;
-  out.floor_source = fit.floor.source;
+  out.error = fit.error;
+  out.floor = fit.floor;
   out.explained = fit.explained;
   out.stick_creep = fit.stick_rmse;
   out.fastest = fit.fastest;

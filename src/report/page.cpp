@@ -1,4 +1,4 @@
-#include "tribofit/report/page.hpp"
+#include "tribofit/report/report.hpp"
 
 #include <string_view>
 

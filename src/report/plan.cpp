@@ -1,4 +1,4 @@
-#include "tribofit/report/plan.hpp"
+#include "tribofit/study/plan.hpp"
 
 #include <fmt/format.h>
 

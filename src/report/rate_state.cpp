@@ -332,13 +332,12 @@ Json rate_state_fits_json(const RateStateAnalysis& analysis, const Motion& motio
       for (std::size_t j = 0; j < n; ++j) out.covariance[i].push_back(scale(i) * scale(j) * fit.covariance[i * n + j]);
     }
     out.degrees_of_freedom = fit.degrees_of_freedom;
-    out.rmse = fit.rmse;
-    out.held_out_rmse = fit.held_out_rmse;
-    out.floor_rmse = std::hypot(fit.noise_white, fit.noise_slow);
-    out.noise = fit.noise_white;
-    out.slow_noise = fit.noise_slow;
-    out.floor_source = "residuals";
-    out.mean_relative = out.max_relative = out.explained = out.stick_creep = out.fastest = std::nan("");
+    out.error = {fit.rmse, std::nan(""), std::nan(""), fit.held_out_rmse};
+    out.floor = {.noise = fit.noise_white,
+                 .slow_noise = fit.noise_slow,
+                 .rmse = std::hypot(fit.noise_white, fit.noise_slow),
+                 .source = "residuals"};
+    out.explained = out.stick_creep = out.fastest = std::nan("");
     out.converged = fit.converged;
     out.samples = fit.samples;
     out.messages = fit.messages;

@@ -8,7 +8,6 @@
 #include "report/diagnosis_sentences.hpp"
 #include "tribofit/execution/stop.hpp"
 #include "tribofit/friction/effects/all.hpp"
-#include "tribofit/report/plan.hpp"
 #include "tribofit/study/plan.hpp"
 
 namespace tribofit::workbench {

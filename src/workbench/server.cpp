@@ -17,7 +17,7 @@
 #include "session_json.hpp"
 #include "tribofit/execution/stop.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/report/page.hpp"
+#include "tribofit/report/report.hpp"
 
 namespace tribofit {
 

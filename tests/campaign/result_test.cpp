@@ -56,7 +56,7 @@ TEST(RunResultTest, HoldsWhatTheAnalysisFound) {
     const ResultFit& fit = second.fits[f];
     EXPECT_EQ(fit.law, to_string(expected.model.law()));
     EXPECT_EQ(fit.protocol, to_string(expected.protocol));
-    EXPECT_DOUBLE_EQ(fit.held_out_rmse, expected.error.held_out_rmse);
+    EXPECT_DOUBLE_EQ(fit.error.held_out_rmse, expected.error.held_out_rmse);
     EXPECT_DOUBLE_EQ(fit.degrees_of_freedom, expected.degrees_of_freedom);
     const std::size_t n = expected.parameters.size();
     ASSERT_EQ(fit.parameters.size(), n);

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"
-#include "tribofit/report/page.hpp"
 #include "tribofit/report/pictures.hpp"
+#include "tribofit/report/report.hpp"
 
 namespace {
 

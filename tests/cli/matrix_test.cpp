@@ -11,7 +11,7 @@
 #include <random>
 
 #include "command.hpp"
-#include "tribofit/report/page.hpp"
+#include "tribofit/report/report.hpp"
 
 namespace {
 

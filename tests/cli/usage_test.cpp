@@ -6,7 +6,7 @@
 #include <regex>
 
 #include "command.hpp"
-#include "tribofit/report/page.hpp"
+#include "tribofit/report/report.hpp"
 #include "tribofit/report/pictures.hpp"
 
 namespace {

@@ -1,10 +1,10 @@
 #include "tribofit/study/fingerprint.hpp"
+#include "report/terminal_text.hpp"
 #include "tribofit/report/terminal.hpp"
 /// Pictures of fingerprints fit the page.
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <limits>
 #include <sstream>
 #include <string>
@@ -12,12 +12,6 @@
 
 namespace tribofit {
 namespace {
-
-/// Signs of a line of UTF-8.
-std::size_t signs(const std::string& line) {
-  return static_cast<std::size_t>(
-      std::count_if(line.begin(), line.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
 
 TEST(Fingerprint, FitsEightyColumnsAndTwentyLines) {
   for (const Effect& effect : effect_catalogue()) {
@@ -29,8 +23,8 @@ TEST(Fingerprint, FitsEightyColumnsAndTwentyLines) {
       std::string line;
       std::size_t lines = 0;
       for (; std::getline(text, line); ++lines) {
-        EXPECT_LE(signs(line), 80u) << line;
-        EXPECT_EQ(unicode || line.size() == signs(line), true) << line;
+        EXPECT_LE(displayed(line), 80u) << line;
+        EXPECT_EQ(unicode || line.size() == displayed(line), true) << line;
       }
       EXPECT_LE(lines, 20u);
     }

@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "lagging.hpp"
-#include "tribofit/report/page.hpp"
+#include "tribofit/report/report.hpp"
 #include "tribofit/workbench/server.hpp"
 
 namespace workbench_test {

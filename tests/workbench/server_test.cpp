@@ -16,7 +16,7 @@
 #include "running_server.hpp"
 #include "tribofit/execution/stop.hpp"
 #include "tribofit/ingest/input_error.hpp"
-#include "tribofit/report/page.hpp"
+#include "tribofit/report/report.hpp"
 
 namespace tribofit {
 namespace {

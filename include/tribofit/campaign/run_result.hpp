@@ -73,10 +73,8 @@ struct ResultFit {
   std::vector<Correlated> correlations;         ///< those above 0.9 in size
   std::vector<std::vector<double>> covariance;  ///< statistical, in the units of the parameters; empty: not known
   double degrees_of_freedom = 1;                ///< of the t distribution of the statistical errors
-  double rmse = 0, held_out_rmse = 0;           ///< [1], or [N] where friction is a force
-  double mean_relative = 0, max_relative = 0;   ///< [D] Eq 5
-  double floor_rmse = 0, noise = 0, scatter = 0, slow_noise = 0;  ///< noise floor and its parts, as rmse
-  std::string floor_source;
+  ErrorFigures error;
+  Floor floor;
   double explained = 0;
   double stick_creep = 0, fastest = 0;  ///< [m/s]
   bool converged = false, conditional = false;

@@ -8,6 +8,7 @@ namespace tribofit {
 struct DiagnosedTraces;  // diagnosis/diagnosis.hpp
 struct Identification;
 struct RigIdentification;
+struct RunPlan;  // study/plan.hpp
 struct TwinIdentification;
 
 struct JsonOptions {
@@ -39,5 +40,9 @@ std::string to_json(const RigIdentification& result, const JsonOptions& options 
 /// "std_error", "difference_in_std_errors"}]}], "rms_difference", "failures", "simulations", "messages", "reason",
 /// "next"}.
 std::string to_json(const TwinIdentification& result, const JsonOptions& options = {});
+
+/// As of the diagnosis, with "plan": {"question", "models", "own", "experiments", "usual_means", "hopeless",
+/// "not_asked", "reason", "next"}; every number in the unit its name says.
+std::string plan_json(const DiagnosedTraces& diagnosed, const RunPlan& plan, const JsonOptions& options = {});
 
 }  // namespace tribofit

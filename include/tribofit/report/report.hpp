@@ -15,6 +15,7 @@ namespace tribofit {
 struct DiagnosedTraces;  // diagnosis/diagnosis.hpp
 struct Identification;
 struct RigIdentification;
+struct RunPlan;  // study/plan.hpp
 struct TwinIdentification;
 
 /// A report as data: title, what it says first, sections of texts, tables and charts. report_of() makes it of a result,
@@ -180,5 +181,23 @@ Report report_of(const RigIdentification& result, const ReportOptions& options =
 /// A twin: measures in standard errors, three cycles of friction and velocity measured and simulated, the portraits,
 /// and the block on its disc, measured and simulated side by side.
 Report report_of(const TwinIdentification& result, const ReportOptions& options = {});
+
+/// What a person reads of a plan: what is open and how likely each answer is so far; the experiments with their
+/// minutes and the probability that each names the effect; what each model predicts to be seen in them; where nothing
+/// settles it, that; and the command to type afterwards.
+ReportSection plan_section(const DiagnosedTraces& diagnosed, const RunPlan& plan, const ReportOptions& options = {});
+/// The plan; on a page the report of the diagnosis behind it, too.
+Report plan_report(const DiagnosedTraces& diagnosed, const RunPlan& plan, const ReportOptions& options = {});
+
+/// Whether this build holds the page: it is left out where npm was not found when the build was configured.
+bool has_report_page();
+
+/// A report as one HTML file that opens in any browser without a network: charts to zoom and save, tables, what was
+/// run.
+///
+/// Less than 4 MB for any trace or diagnosis: what is drawn is reduced to the extremes of each stretch, so that no peak
+/// is lost. Nothing in the file is executed but its own scripts (Content-Security-Policy), whatever names the input
+/// has. Throws InputError where has_report_page() is false.
+std::string report_page(const Report& report);
 
 }  // namespace tribofit

@@ -32,14 +32,6 @@ Json settled_json(const Settled& settled, const std::string& way = "");
 /// The same, and why a motion did not settle.
 Json explained_json(const Settled& settled);
 
-/// A file with the objects that row_of makes of 0 to count - 1 as rows, under the names of their members. It makes one
-/// of 0 even where there are none.
-template <class RowOf>
-void write_rows(WholeFolder& files, const std::string& name, std::size_t count, RowOf row_of, int digits = 0) {
-  CsvTable<std::size_t> table(files, name, {{csv_names(row_of(0)), row_of}}, digits);
-  for (std::size_t k = 0; k < count; ++k) table.row(k);
-}
-
 /// A table of motions: their speed, columns of these names, the regime and the measures.
 ReportTable settled_table(const char* caption, const std::vector<const char*>& more = {});
 /// A row of it, behind what `row` holds.
