@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "conditions.hpp"
-#include "ingest/column_names.hpp"
+#include "ingest/raw_table.hpp"
 #include "ingest/csv/dialect.hpp"
 #include "ingest/csv/text_table.hpp"
 #include "tribofit/friction/laws/all.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "conditions.hpp"
-#include "ingest/column_names.hpp"
+#include "ingest/raw_table.hpp"
 #include "ingest/reader.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"

@@ -68,10 +68,6 @@ class Assembler {
     }
   }
 
-  static bool all_know(const std::vector<Step>& steps, Condition Conditions::*condition) {
-    return std::ranges::all_of(steps, [&](const Step& step) { return (step.conditions.*condition).known(); });
-  }
-
   /// The motion alone, or friction alone, where nothing else of the file could be the other.
   void settle_kind_without_friction() {
     const bool stiffness_alone = run_.kind == RecordKind::spring_slider;  // which a stiffness says of both
@@ -93,10 +89,9 @@ class Assembler {
     const auto& radii = options_.step_radii;
     refuse_other_count(radii.size());
     if (options_.conditions.radius.known()) refuse_radius(options_.conditions.radius.value);
-    for (std::size_t i = 0; i < trace_.steps.size(); ++i) {
-      Conditions& conditions = trace_.steps[i].conditions;
+    for (auto& [begin, end, label, conditions, recipe] : trace_.steps) {
       conditions = first_known(options_.conditions, conditions);
-      if (!radii.empty()) conditions.radius = {radii[run_.recipe_steps[i]], "command line"};
+      if (!radii.empty()) conditions.radius = {radii[recipe], "command line"};
       if (conditions.radius.known()) refuse_radius(conditions.radius.value);
     }
     for (const ConditionInfo& info : condition_infos) trace_.conditions.*info.member = common(info.member);
@@ -228,7 +223,7 @@ class Assembler {
       divide_by_measured_load(force);
       return;
     }
-    if (!all_know(trace_.steps, &Conditions::load)) {
+    if (std::ranges::any_of(trace_.steps, [](const Step& s) { return !s.conditions.load.known(); })) {
       trace_.friction_kind = FrictionKind::force;
       trace_.notes.push_back("no normal force is known: friction is a force in N, " + force +
                              (force == "torque/radius" ? "" : " as measured") + " (state " + setting("load") +

@@ -134,8 +134,7 @@ class Clock {
     } else if (!step_.empty()) {
       step.label = fmt::format("{}", general(step_[row]));
     }
-    const std::size_t recipe = recording_.recipe_size();
-    recording_.recipe_steps.push_back(in_recipe ? recipe : recipe - 1);
+    step.recipe = in_recipe ? recording_.recipe_size() : recording_.recipe_size() - 1;
     recording_.steps.push_back(step);
   }
 

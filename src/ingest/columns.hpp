@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "column_names.hpp"
 #include "raw_table.hpp"
 #include "tribofit/ingest/read_trace.hpp"
 

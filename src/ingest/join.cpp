@@ -37,20 +37,11 @@ void crop(FileRecord& run, std::size_t begin, std::size_t end) {
     channel.resize(end);
     channel.erase(channel.begin(), channel.begin() + static_cast<std::ptrdiff_t>(begin));
   }
-  std::vector<Step> steps;
-  std::vector<std::size_t> recipe_steps;
-  for (std::size_t i = 0; i < run.steps.size(); ++i) {
-    Step step = run.steps[i];
-    step.begin = std::max(step.begin, begin);
-    step.end = std::min(step.end, end);
-    if (step.begin >= step.end) continue;
-    step.begin -= begin;
-    step.end -= begin;
-    steps.push_back(step);
-    recipe_steps.push_back(run.recipe_steps[i]);
+  for (Step& step : run.steps) {
+    step.begin = std::clamp(step.begin, begin, end) - begin;
+    step.end = std::clamp(step.end, begin, end) - begin;
   }
-  run.steps = std::move(steps);
-  run.recipe_steps = std::move(recipe_steps);
+  std::erase_if(run.steps, [](const Step& step) { return step.begin == step.end; });
   run.cut_rows += begin;
   auto& time = run[Channel::time];
   const double start = time.front();

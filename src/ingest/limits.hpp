@@ -92,10 +92,8 @@ inline constexpr std::size_t kMostColumns = 4096, kMostNamed = 20;
 /// Longest line that is read [bytes]. A row of numbers is far below it; a file that is one line of gigabytes is found
 /// out without holding it. The same of a JSON file that people write, and 16 times as much of a manifest.
 inline constexpr std::size_t kLongestLine = std::size_t{1} << 20, kLargestManifest = 16 * kLongestLine;
-/// TDMS: properties of an object, objects (groups and channels) of a file, and pieces of all channels, which then take
-/// 200 MB.
-inline constexpr std::size_t kMostTdmsProperties = 4096, kMostTdmsObjects = 65536,
-                             kMostTdmsPieces = std::size_t{4} << 20;
+/// TDMS: properties of an object, and objects (groups and channels) of a file.
+inline constexpr std::size_t kMostTdmsProperties = 4096, kMostTdmsObjects = 65536;
 /// MATLAB: characters that are kept as a fact, arrays of a file with the fields of structures, and structures in one
 /// another.
 inline constexpr std::uint64_t kLongestMatText = 1000, kMostMatArrays = 65536, kDeepestMatStructure = 16;

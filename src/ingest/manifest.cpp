@@ -13,10 +13,10 @@
 #include <system_error>
 #include <utility>
 
-#include "column_names.hpp"
 #include "csv/text_table.hpp"
 #include "input_file.hpp"
 #include "limits.hpp"
+#include "raw_table.hpp"
 #include "stated_conditions.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"

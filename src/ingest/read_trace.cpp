@@ -42,20 +42,18 @@ void check_requests(const NamedColumns& columns, std::initializer_list<const Fil
   }
 }
 
-/// What one file is asked for is not looked for in the other.
+/// What one file is asked for is not looked for in the other, nor is another description of the same quantity.
 void leave_to_other(const NamedColumns& named, NamedColumns& other) {
-  const std::array<std::vector<std::string>, 2> descriptions = {{{"mu", "force", "torque"}, {"v_b", "v_r"}}};
-  const auto set_aside = [&](const std::string& channel) {
-    if (!is_named(other, channel)) other[channel] = "none";
-  };
-  for (const auto& channels : descriptions) {
-    const auto in = [&](const NamedColumns& columns) {
-      return std::any_of(channels.begin(), channels.end(), [&](const auto& c) { return is_named(columns, c); });
-    };
-    if (in(named) && !in(other)) std::for_each(channels.begin(), channels.end(), set_aside);
-  }
-  for (const auto& [channel, column] : named) {
-    if (channel != "time" && is_named(named, channel)) set_aside(channel);
+  const NamedColumns asked = other;
+  for (const Channel channel : all_channels) {
+    if (channel == Channel::time || !is_named(named, to_string(channel))) continue;
+    const auto is_same = [&](Channel c) { return info_of(c).target == info_of(channel).target; };
+    const bool is_in_both =
+        std::ranges::any_of(all_channels, [&](Channel c) { return is_same(c) && is_named(asked, to_string(c)); });
+    for (const Channel c : all_channels) {
+      if ((c == channel || (is_same(c) && !is_in_both)) && !is_named(asked, to_string(c)))
+        other[std::string(to_string(c))] = "none";
+    }
   }
 }
 

@@ -26,9 +26,8 @@ bool is_no_clock(const std::vector<double>& time) {
 
 /// Whether values go one way for nearly all of a record: a machine goes back to where it began at the end of a test.
 bool go_one_way(const std::vector<double>& values) {
-  constexpr std::size_t kLooks = 200;
   constexpr double kNearlyAll = 0.85, kStill = 1e-3;
-  const std::size_t stride = 1 + values.size() / kLooks;
+  const std::size_t stride = 1 + values.size() / 200;
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   std::size_t on = 0, back = 0;
   for (std::size_t i = stride; i < values.size(); i += stride) {
@@ -130,8 +129,7 @@ void set_points(FileRecord& recording) {
   recording[Channel::time] = numbers_from_zero(rows);
   for (const Channel of_time : {Channel::step, Channel::angle}) recording[of_time].clear();
   recording.clock_end = rows > 0 ? static_cast<double>(rows - 1) : 0;
-  recording.steps = {{0, rows, "", recording.file_conditions}};
-  recording.recipe_steps = {0};
+  recording.steps = {{0, rows, "", recording.file_conditions, 0}};
 }
 
 void sort_points(Trace& trace) {

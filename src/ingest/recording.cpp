@@ -8,7 +8,6 @@
 
 #include "content_hash.hpp"
 #include "limits.hpp"
-#include "memory.hpp"
 #include "stated_conditions.hpp"
 #include "tribofit/execution/parallel.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -219,13 +218,12 @@ void continue_recording(FileRecord& run, FileRecord next, std::size_t number) {
   for (double& t : next.time) t += shift;
   for (const Channel channel : run.present())
     run[channel].insert(run[channel].end(), next[channel].begin(), next[channel].end());
-  for (std::size_t i = 0; i < next.steps.size(); ++i) {
-    Step step = next.steps[i];
+  for (Step step : next.steps) {
     step.begin += before;
     step.end += before;
+    step.recipe += recipe;
     if (step.label.empty()) step.label = continued;
     run.steps.push_back(step);
-    run.recipe_steps.push_back(recipe + next.recipe_steps[i]);
   }
   run.clock_end = goes_on ? next.clock_end : run.clock_end;
   run.checksum = xxh64(next.checksum, run.checksum);

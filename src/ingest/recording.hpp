@@ -35,7 +35,6 @@ struct FileRecord : Trace {
   double clock_start = 0, clock_end = 0;  ///< first and last time as written [s]
   Conditions file_conditions;             ///< that the file states for all its steps
   std::vector<RawStep> stated_steps;      ///< as the file divides itself
-  std::vector<std::size_t> recipe_steps;  ///< per step: which step of the recipe it belongs to, from 0
   std::string unused_displacement;        ///< column of a displacement of which nothing more is known
 
   bool is_points() const { return kind == RecordKind::points; }
@@ -66,7 +65,7 @@ struct FileRecord : Trace {
   std::string place_of(std::size_t row) const;
   /// Rows as lines of the file, or as values where it has none: "lines 3, 8" (at most 12 of them).
   std::string places_of(const std::vector<std::size_t>& rows) const;
-  std::size_t recipe_size() const { return recipe_steps.empty() ? 0 : recipe_steps.back() + 1; }
+  std::size_t recipe_size() const { return steps.empty() ? 0 : steps.back().recipe + 1; }
 };
 
 /// Reads one file with the reader that recognises it; its time is made to start at 0 and to increase, its steps are

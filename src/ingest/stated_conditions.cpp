@@ -7,8 +7,8 @@
 #include <optional>
 #include <set>
 
-#include "column_names.hpp"
 #include "limits.hpp"
+#include "raw_table.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/output/digits.hpp"

@@ -270,12 +270,11 @@ std::optional<Unit> find_exactly(std::string_view text) {
 }
 
 const std::vector<std::string>& known_units() {
-  static const std::vector<std::string> names = {
-      "s",    "ms",   "us",    "min",      "h",     "m",     "mm",    "um",     "cm",  "in",   "m/s", "mm/s",
-      "um/s", "cm/s", "rad/s", "rpm",      "deg/s", "rev/s", "m/s^2", "mm/s^2", "N",   "mN",   "kN",  "MN",
-      "kgf",  "gf",   "lbf",   "kip",      "Nm",    "mNm",   "Nmm",   "kNm",    "kg",  "g",    "N/m", "N/mm",
-      "kN/m", "Ns/m", "Ns/mm", "Hz",       "kHz",   "MHz",   "rad",   "deg",    "rev", "degC", "K",   "V",
-      "mV",   "s/m",  "s/mm",  "s^2/mm^2", "1/m",   "1/mm",  "1/s",   "1/min",  "1/K", "%"};
+  static const std::vector<std::string> names = split(
+      "s ms us min h m mm um cm in m/s mm/s um/s cm/s rad/s rpm deg/s rev/s m/s^2 mm/s^2 N mN kN MN kgf gf lbf kip Nm "
+      "mNm Nmm kNm kg g N/m N/mm kN/m Ns/m Ns/mm Hz kHz MHz rad deg rev degC K V mV s/m s/mm s^2/mm^2 1/m 1/mm 1/s "
+      "1/min 1/K %",
+      ' ');
   return names;
 }
 

@@ -29,6 +29,7 @@ struct Step {
   std::size_t begin = 0, end = 0;  ///< samples [begin, end)
   std::string label;               ///< as the file names it
   Conditions conditions;
+  std::size_t recipe = 0;  ///< which step of the recipe it belongs to: a gap divides one
 };
 
 /// One run as recorded, in SI units, with every sample checked to be finite.

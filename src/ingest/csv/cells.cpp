@@ -1,4 +1,4 @@
-#include "cells.hpp"
+#include "dialect.hpp"
 
 #include <fast_float/fast_float.h>
 

@@ -7,9 +7,8 @@
 
 #include "dialect.hpp"
 #include "encoding.hpp"
-#include "heading.hpp"
-#include "ingest/column_names.hpp"
 #include "ingest/limits.hpp"
+#include "ingest/raw_table.hpp"
 #include "ingest/reader.hpp"
 #include "ingest/stated_conditions.hpp"
 #include "rows.hpp"

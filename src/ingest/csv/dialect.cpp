@@ -7,9 +7,7 @@
 #include <cctype>
 #include <map>
 
-#include "cells.hpp"
 #include "encoding.hpp"
-#include "heading.hpp"
 #include "ingest/limits.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"

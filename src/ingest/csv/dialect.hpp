@@ -7,11 +7,27 @@
 #include <string_view>
 #include <vector>
 
-#include "cells.hpp"
+#include "encoding.hpp"
 #include "ingest/input_file.hpp"
 #include "ingest/raw_table.hpp"
 
 namespace tribofit {
+
+/// The separator of columns that are divided by one or more blanks or tabs.
+inline constexpr char blanks = ' ';
+
+/// The cells of a line: quotes taken off, white space trimmed.
+std::vector<std::string> split_cells(std::string_view line, char separator);
+
+/// The number that the whole cell is, exactly rounded; nan and inf are, and a decimal point is understood in any file.
+std::optional<double> number_in(std::string_view cell, char decimal);
+/// Whether it is one with this decimal mark.
+bool is_number(std::string_view cell, char decimal);
+
+/// The time of a logger that writes a clock: "12:04:59.250", with a date before it or not ("2024-05-03T12:04:59,25",
+/// "03.05.2024 12:04:59"), in seconds since the beginning of the year 2020, or of the day. Doubles hold it to 0.1 us.
+/// Nothing for any other text: days and months in American or English order cannot be told apart.
+std::optional<double> clock_time(std::string_view cell);
 
 /// How a file writes its table, and where the table begins and ends.
 struct Dialect {
@@ -42,6 +58,35 @@ struct Dialect {
 /// the one above is cut off and dropped.
 /// Throws InputError for an empty file, a file that is not text, and one without rows of numbers.
 Dialect find_dialect(const InputFile& file);
+
+/// A line of the beginning of a file, without its end.
+struct HeadLine {
+  std::string_view text;
+  std::uint64_t begin = 0;
+};
+
+/// Whether the line begins like a comment.
+bool is_comment(std::string_view line);
+
+/// Finds the names and units of the columns above line `first` (from 0) and sets them in the dialect, whose separator
+/// and number of columns are known: a header with a row of units below it, or with units in the place of some names and
+/// the names in the line above (drives), or "Channel name, Force, Channel name, Input" (NI), where every other column
+/// is the time of the next.
+void find_heading(const std::vector<HeadLine>& lines, std::size_t first, Encoding encoding, Dialect& dialect);
+
+/// "# Radius [mm]: 15", "Speed = 4 rpm", "\"Normal load [N]\";50", "Interval,0.0005,..." as a name and its value.
+std::optional<RawFact> find_fact(std::string_view line, std::size_t number);
+
+/// "2" of "Step No. 2", "Step 2 started at 12:00", "Run # 2"; empty for other lines.
+std::string number_of_step(const std::string& text);
+
+/// The facts of the lines above the first row.
+std::vector<RawFact> find_facts(const std::vector<HeadLine>& lines, Encoding encoding, const Dialect& dialect);
+
+/// Sets which block of columns each belongs to, where a time column stands more than once in a row: a block begins with
+/// each. `rows`: some rows of the file, its last one among them; where they show that the blocks have clocks of their
+/// own, or that one ends before the other, the blocks are apart.
+void find_blocks(const std::vector<std::vector<std::string>>& rows, Dialect& dialect);
 
 /// What is wrong with a line of more than a megabyte.
 RawDefect too_long_line();

@@ -77,7 +77,8 @@ std::string converted(std::string_view text, const char* from) {
 }
 
 struct Signature {
-  std::string_view bytes, name, advice;
+  std::string_view bytes, name;
+  const char* advice;
 };
 
 constexpr std::array signatures = {
@@ -89,28 +90,24 @@ constexpr std::array signatures = {
 };
 
 /// What a file is that is not text, and what to do with it.
-struct Foreign {
-  std::string problem, advice;
-};
-
-std::optional<Foreign> find_foreign(std::string_view head) {
+std::optional<InputError> find_foreign(std::string_view head) {
   for (const Signature& signature : signatures) {
     if (!head.starts_with(signature.bytes)) continue;
-    return Foreign{fmt::format("is {}, not a CSV file", signature.name), std::string(signature.advice)};
+    return InputError(fmt::format("is {}, not a CSV file", signature.name), signature.advice);
   }
   const std::string_view start = head.substr(0, 4096);
   const auto zeros = std::count(start.begin(), start.end(), '\0');
   const bool utf16_mark = head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF");
   if (utf16_mark || (start.size() >= 4 && (start[0] == '\0') != (start[1] == '\0') &&
                      static_cast<double>(zeros) > kZerosOfUtf16 * static_cast<double>(start.size()))) {
-    return Foreign{"is UTF-16 text (\"Unicode\" in Windows programs)",
-                   "save it as CSV UTF-8, or convert it with: iconv -f UTF-16 -t UTF-8"};
+    return InputError("is UTF-16 text (\"Unicode\" in Windows programs)",
+                      "save it as CSV UTF-8, or convert it with: iconv -f UTF-16 -t UTF-8");
   }
   const auto control = std::count_if(start.begin(), start.end(), [](char c) {
     return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t' && c != '\f' && c != '\x1A';
   });
   if (zeros > 0 || static_cast<double>(control) > kControlsOfText * static_cast<double>(start.size())) {
-    return Foreign{"is a binary file, not a CSV file", "export the channels as text with one row per sample"};
+    return InputError("is a binary file, not a CSV file", "export the channels as text with one row per sample");
   }
   return std::nullopt;
 }
@@ -123,7 +120,7 @@ bool is_text(std::string_view head) {
 
 void refuse_unless_text(std::string_view head, const std::string& path) {
   const auto foreign = find_foreign(head);
-  if (foreign) throw InputError(foreign->problem, foreign->advice, {path, 0, ""});
+  if (foreign) throw InputError(foreign->problem(), foreign->advice(), {path, 0, ""});
 }
 
 Encoding guess_encoding(std::string_view head) {

@@ -1,11 +1,11 @@
-#include "heading.hpp"
+#include "dialect.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <map>
 #include <utility>
 
-#include "ingest/column_names.hpp"
+#include "ingest/raw_table.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
 

@@ -2,6 +2,7 @@
 
 #include <fast_float/fast_float.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
 
 #include <algorithm>
 #include <atomic>
@@ -15,10 +16,8 @@
 #include <span>
 #include <string_view>
 
-#include "heading.hpp"
-#include "ingest/huge_pages.hpp"
+#include "dialect.hpp"
 #include "ingest/limits.hpp"
-#include "ingest/memory.hpp"
 #include "tribofit/execution/parallel.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -29,6 +28,15 @@ namespace {
 // A chunk and its numbers stay in the cache of a core. Chunks end where lines do and depend on the file only, not on
 // the number of threads.
 constexpr std::uint64_t chunk_bytes = std::uint64_t{1} << 17;
+
+/// Asks for memory in pages of 2 MB for so many values: a column of millions of numbers is touched for the first time
+/// here, and page by page that costs as much as reading the numbers. Only an advice; nothing depends on it.
+void prefer_huge_pages(std::vector<double>& values, std::size_t count) {
+  constexpr std::uintptr_t page = std::uintptr_t{1} << 21;
+  const auto begin = (reinterpret_cast<std::uintptr_t>(values.data()) + page - 1) & ~(page - 1);
+  const auto end = reinterpret_cast<std::uintptr_t>(values.data() + std::min(count, values.capacity())) & ~(page - 1);
+  if (begin < end) ::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+}
 
 /// What one chunk of lines gave; lines count from 1 at the chunk's beginning.
 struct Chunk {

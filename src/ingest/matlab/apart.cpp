@@ -19,8 +19,8 @@
 #include <utility>
 #include <vector>
 
+#include "ingest/input_file.hpp"
 #include "ingest/limits.hpp"
-#include "ingest/memory.hpp"
 #include "tribofit/ingest/spelling.hpp"
 
 namespace tribofit {
@@ -31,20 +31,16 @@ struct Head {
   std::uint64_t is_refusal, size;
 };
 
-bool write_all(int pipe, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t count = ::write(pipe, bytes.data(), bytes.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return false;
-    bytes.remove_prefix(static_cast<std::size_t>(count));
-  }
-  return true;
-}
-
 void answer(int pipe, bool is_refusal, std::string_view bytes) {
   const Head head = {is_refusal, bytes.size()};
-  const std::string_view head_bytes(reinterpret_cast<const char*>(&head), sizeof head);
-  if (!write_all(pipe, head_bytes) || !write_all(pipe, bytes)) ::_exit(EXIT_FAILURE);  // nobody listens
+  for (std::string_view part : {std::string_view(reinterpret_cast<const char*>(&head), sizeof head), bytes}) {
+    while (!part.empty()) {
+      const ssize_t count = ::write(pipe, part.data(), part.size());
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) ::_exit(EXIT_FAILURE);  // nobody listens
+      part.remove_prefix(static_cast<std::size_t>(count));
+    }
+  }
 }
 
 void limit_process(std::uint64_t memory) {

@@ -15,40 +15,41 @@
 #include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {
-namespace tdms {
-
 namespace {
 
 /// Types of numbers, by their numbers in the file; nullptr: another type.
 const NumberType* find_type(std::uint32_t type) {
-  static const std::map<std::uint32_t, NumberType> types = {
-      {1, number_type<std::int8_t>},   {2, number_type<std::int16_t>},       {3, number_type<std::int32_t>},
-      {4, number_type<std::int64_t>},  {5, number_type<std::uint8_t>},       {6, number_type<std::uint16_t>},
-      {7, number_type<std::uint32_t>}, {8, number_type<std::uint64_t>},      {9, number_type<float>},
-      {10, number_type<double>},       {boolean, number_type<std::uint8_t>}, {0x19, number_type<float>},
-      {0x1A, number_type<double>}};
+  static const std::map<std::uint32_t, NumberType> types = {{1, number_type<std::int8_t>},
+                                                            {2, number_type<std::int16_t>},
+                                                            {3, number_type<std::int32_t>},
+                                                            {4, number_type<std::int64_t>},
+                                                            {5, number_type<std::uint8_t>},
+                                                            {6, number_type<std::uint16_t>},
+                                                            {7, number_type<std::uint32_t>},
+                                                            {8, number_type<std::uint64_t>},
+                                                            {9, number_type<float>},
+                                                            {10, number_type<double>},
+                                                            {tdms::boolean, number_type<std::uint8_t>},
+                                                            {0x19, number_type<float>},
+                                                            {0x1A, number_type<double>}};
   const auto found = types.find(type);
   return found == types.end() ? nullptr : &found->second;
 }
 
-}  // namespace
-
+/// Bytes of a value; 0: not of one length, or not known.
 std::size_t bytes_of(std::uint32_t type) {
   const NumberType* known = find_type(type);
-  return known != nullptr ? known->bytes : type == timestamp ? 16 : 0;
+  return known != nullptr ? known->bytes : type == tdms::timestamp ? 16 : 0;
 }
 
+/// A value as a number; timestamps in s after `epoch` [s].
 double value_at(std::string_view bytes, std::size_t at, std::uint32_t type, bool big_endian, double epoch) {
-  if (type != timestamp) return find_type(type)->at(bytes, at, big_endian);
+  if (type != tdms::timestamp) return find_type(type)->at(bytes, at, big_endian);
   // Fractions of 2^-64 s and seconds since 1904; the seconds come first where the highest byte does.
   const auto seconds = number_at<std::int64_t>(bytes, at + (big_endian ? 0 : 8), big_endian);
   const auto fractions = number_at<std::uint64_t>(bytes, at + (big_endian ? 8 : 0), big_endian);
   return (static_cast<double>(seconds) - epoch) + std::ldexp(static_cast<double>(fractions), -64);
 }
-
-}  // namespace tdms
-
-namespace {
 
 namespace contents {  // of a segment: bits of its mask
 constexpr std::uint32_t metadata = 2, new_list = 4, raw_data = 8, interleaved = 32, big_endian = 64, daqmx = 128;
@@ -71,14 +72,18 @@ struct State {
   std::map<std::string, std::size_t> properties;
 };
 
+using WantedValues = std::map<std::size_t, std::vector<double>*>;
+
 class Parser {
  public:
-  Parser(const InputFile& file, std::vector<std::string>& notes) : file_(file), notes_(notes) {}
+  /// wanted: objects of which the values are read, too.
+  explicit Parser(const InputFile& file, WantedValues wanted = {}) : file_(file), wanted_(std::move(wanted)) {}
 
   std::vector<TdmsObject> parse() {
     for (std::uint64_t at = 0; at < file_.size();) at = segment(at);
     return std::move(objects_);
   }
+  const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   [[noreturn]] void refuse(std::uint64_t at, const std::string& problem, const char* advice = nullptr) const {
@@ -146,7 +151,7 @@ class Parser {
     if (is_new) {
       if (objects_.size() == kMostTdmsObjects)
         refuse(at(), fmt::format("more than {} groups and channels", kMostTdmsObjects), "export fewer channels");
-      objects_.push_back({path, names_of(path), 0, 0, {}, {}});
+      objects_.push_back({path, names_of(path), k, 0, 0, {}});
       states_.emplace_back();
     }
     const std::uint64_t index_at = at();
@@ -176,7 +181,7 @@ class Parser {
   void set_listed(std::size_t k, const Index& index) {
     State& state = states_[k];
     if (!state.place) return;
-    const auto sample = [](const Index& i) { return i.bytes > 0 ? tdms::bytes_of(i.type) : 0; };
+    const auto sample = [](const Index& i) { return i.bytes > 0 ? bytes_of(i.type) : 0; };
     chunk_ += index.bytes - state.listed.bytes;
     sample_ += sample(index) - sample(state.listed);
     state.listed = index;
@@ -194,7 +199,7 @@ class Parser {
     index.count = number<std::uint64_t>();
     if (index.type == no_values) refuse_daqmx(index_at, object.path);
     if (dimensions != 1) refuse(index_at, fmt::format("{} is of {} dimensions, not one", object.path, dimensions));
-    const std::size_t size = tdms::bytes_of(index.type);
+    const std::size_t size = bytes_of(index.type);
     if (index.type == tdms::text) {
       index.bytes = number<std::uint64_t>();
     } else if (size == 0) {
@@ -219,7 +224,7 @@ class Parser {
     property.name = text();
     const std::uint64_t type_at = at();
     const auto type = number<std::uint32_t>();
-    const std::size_t size = tdms::bytes_of(type);
+    const std::size_t size = bytes_of(type);
     property.is_text = type == tdms::text;
     if (property.is_text) {
       property.text = text();
@@ -227,7 +232,7 @@ class Parser {
       refuse(type_at, fmt::format("the property {} is of the type {:#x}, which is not known", property.name, type));
     } else {
       described_->need(1, size);
-      property.number = tdms::value_at(described_->bytes(), described_->position(), type, big_endian_, 0);
+      property.number = value_at(described_->bytes(), described_->position(), type, big_endian_, 0);
       described_->skip(size);
     }
     const auto [known, is_new] = states_[k].properties.emplace(property.name, object.properties.size());
@@ -256,8 +261,8 @@ class Parser {
     return names;
   }
 
-  /// Notes where the values of a segment are: chunks of the same build, as many as it holds; one chunk of samples of
-  /// all channels where they are interleaved.
+  /// Goes through the values of a segment: chunks of the same build, as many as it holds; where the channels are
+  /// interleaved, samples of all of them.
   void values(std::uint64_t begin, std::uint64_t size) {
     if ((mask_ & contents::daqmx) != 0)
       refuse(begin, "raw values of DAQmx, which need its scaling",
@@ -269,16 +274,13 @@ class Parser {
     if (unfinished_) size -= size % part;
     if (size % part != 0)
       refuse(begin, fmt::format("{} bytes of values in {} of {}", size, interleaved ? "samples" : "chunks", part));
-    if (size == 0) return;
     std::uint64_t at = begin;
     for (const auto& [place, k] : with_values_) {
       const Index& index = states_[k].listed;
-      const std::size_t bytes = tdms::bytes_of(index.type);
-      if (interleaved) {
-        add({at, size / part, part, 1, 0, big_endian_}, objects_[k]);
-      } else if (bytes > 0) {
-        add({at, index.count, bytes, size / part, part, big_endian_}, objects_[k]);
-      }
+      const std::size_t bytes = bytes_of(index.type);
+      const std::uint64_t count = interleaved ? 1 : index.count;
+      if (bytes > 0) objects_[k].count += count * (size / part);
+      if (wanted_.contains(k)) read_chunks(k, at, count, size / part, part);
       at += interleaved ? bytes : index.bytes;
     }
   }
@@ -293,38 +295,36 @@ class Parser {
     }
   }
 
-  void add(TdmsPiece piece, TdmsObject& object) {
-    object.count += piece.count * piece.chunks;
-    if (piece.chunk_stride == piece.count * piece.stride) {  // one chunk goes on in the next
-      piece.count *= piece.chunks;
-      piece.chunks = 1;
-    }
-    if (!object.pieces.empty() && goes_on(object.pieces.back(), piece)) return;
-    if (++pieces_ > kMostTdmsPieces) {
-      refuse(piece.begin, fmt::format("the values are in more than {} pieces", kMostTdmsPieces),
-             "defragment the file in LabVIEW, or export it as CSV");
-    }
-    object.pieces.push_back(piece);
+  /// Reads `count` values from each of the chunks; single ones with what is between them.
+  void read_chunks(std::size_t k, std::uint64_t begin, std::uint64_t count, std::uint64_t chunks, std::uint64_t chunk) {
+    constexpr std::uint64_t most_between = 4096;
+    if (count == 1 && chunk <= most_between) return read_values(k, begin, chunks, chunk);
+    for (std::uint64_t c = 0; c < chunks; ++c)
+      read_values(k, begin + c * chunk, count, bytes_of(states_[k].listed.type));
   }
 
-  /// Lengthens the last piece by the next one, where it is of the same build.
-  static bool goes_on(TdmsPiece& last, const TdmsPiece& next) {
-    if (last.stride != next.stride || last.big_endian != next.big_endian || next.begin < last.begin) return false;
-    if (last.chunks == 1 && next.chunks == 1 && last.begin + last.count * last.stride == next.begin) {
-      last.count += next.count;
-      return true;
+  /// Values at even distances, from a byte on.
+  void read_values(std::size_t k, std::uint64_t begin, std::uint64_t count, std::uint64_t stride) {
+    const std::uint32_t type = states_[k].listed.type;
+    std::vector<double>& out = *wanted_.at(k);
+    const std::uint64_t most = std::max<std::uint64_t>(1, (1 << 20) / stride);
+    for (std::uint64_t done = 0; done < count;) {
+      const std::uint64_t now = std::min(most, count - done), size = (now - 1) * stride + bytes_of(type);
+      const std::string bytes = file_.read_text(begin + done * stride, size);
+      if (bytes.size() < size) {
+        throw InputError(fmt::format("byte {}: the values are cut off", file_.size()), "copy the file again",
+                         {file_.path(), 0, objects_[k].path});
+      }
+      if (out.empty() && type == tdms::timestamp) epoch_[k] = std::floor(value_at(bytes, 0, type, big_endian_, 0));
+      const double epoch = type == tdms::timestamp ? epoch_[k] : 0;
+      for (std::uint64_t i = 0; i < now; ++i)
+        out.push_back(value_at(bytes, static_cast<std::size_t>(i * stride), type, big_endian_, epoch));
+      done += now;
     }
-    const std::uint64_t stride = last.chunks > 1 ? last.chunk_stride : next.begin - last.begin;
-    const bool same = last.count == next.count && last.begin + last.chunks * stride == next.begin &&
-                      (next.chunks == 1 || next.chunk_stride == stride);
-    if (!same) return false;
-    last.chunk_stride = stride;
-    last.chunks += next.chunks;
-    return true;
   }
 
   const InputFile& file_;
-  std::vector<std::string>& notes_;
+  std::vector<std::string> notes_;
   std::uint32_t mask_ = 0;
   bool big_endian_ = false, unfinished_ = false;  // the segment
   std::optional<ByteCursor> described_;           // a copy of what describes the objects of a segment
@@ -336,7 +336,8 @@ class Parser {
   std::map<std::uint64_t, std::size_t> with_values_;  // those with values in it: place, object
   std::uint64_t next_place_ = 0;
   std::uint64_t chunk_ = 0, sample_ = 0;  // bytes of a chunk, and of one value of each
-  std::size_t pieces_ = 0;                // of all objects
+  WantedValues wanted_;
+  std::map<std::size_t, double> epoch_;  // of wanted times [s]
 };
 
 }  // namespace
@@ -347,7 +348,14 @@ const TdmsProperty* TdmsObject::find(std::string_view name) const {
 }
 
 std::vector<TdmsObject> read_tdms_objects(const InputFile& file, std::vector<std::string>& notes) {
-  return Parser(file, notes).parse();
+  Parser parser(file);
+  std::vector<TdmsObject> objects = parser.parse();
+  notes.insert(notes.end(), parser.notes().begin(), parser.notes().end());
+  return objects;
+}
+
+void read_tdms_values(const InputFile& file, const std::map<std::size_t, std::vector<double>*>& wanted) {
+  Parser(file, wanted).parse();
 }
 
 }  // namespace tribofit

@@ -44,66 +44,24 @@ RawColumn column_of(const TdmsObject& object, std::size_t rows) {
   return column;
 }
 
-/// The second in which the first of the times begins: times are measured from there, or they would lose digits.
-double epoch_of(const InputFile& file, const TdmsObject& object) {
-  if (object.type != tdms::timestamp || object.pieces.empty()) return 0;
-  std::string bytes(16, '\0');
-  file.read(object.pieces.front().begin, bytes);
-  return std::floor(tdms::value_at(bytes, 0, tdms::timestamp, object.pieces.front().big_endian, 0));
-}
-
-/// Values at even distances, from a byte on.
-void read_values(const InputFile& file, const TdmsObject& object, const TdmsPiece& piece, std::uint64_t begin,
-                 double epoch, std::vector<double>& out) {
-  const std::uint64_t size = tdms::bytes_of(object.type);
-  const std::uint64_t most = std::max<std::uint64_t>(1, (1 << 20) / piece.stride);
-  std::string bytes;
-  for (std::uint64_t done = 0; done < piece.count;) {
-    const std::uint64_t now = std::min(most, piece.count - done);
-    bytes.resize(static_cast<std::size_t>((now - 1) * piece.stride + size));
-    if (file.read(begin + done * piece.stride, bytes) < bytes.size()) {
-      throw InputError(fmt::format("byte {}: the values are cut off", file.size()), "copy the file again",
-                       {file.path(), 0, object.path});
-    }
-    for (std::uint64_t i = 0; i < now; ++i) {
-      out.push_back(
-          tdms::value_at(bytes, static_cast<std::size_t>(i * piece.stride), object.type, piece.big_endian, epoch));
-    }
-    done += now;
-  }
-}
-
-void read_piece(const InputFile& file, const TdmsObject& object, const TdmsPiece& piece, double epoch,
-                std::vector<double>& out) {
-  if (piece.count == 1 && piece.chunks > 1 && piece.chunk_stride <= 4096) {  // read what is between them, too
-    const TdmsPiece values = {piece.begin, piece.chunks, piece.chunk_stride, 1, 0, piece.big_endian};
-    return read_values(file, object, values, piece.begin, epoch, out);
-  }
-  for (std::uint64_t k = 0; k < piece.chunks; ++k) {
-    read_values(file, object, piece, piece.begin + k * piece.chunk_stride, epoch, out);
-  }
-}
-
 void load_channels(const InputFile& file, const Objects& channels, RawTable& table,
                    std::span<const std::size_t> columns) {
+  std::map<std::size_t, std::vector<double>*> wanted;
   for (const std::size_t index : columns) {
-    const TdmsObject& object = channels[index];
     RawColumn& column = table.columns[index];
     if (!column.numbers.empty()) continue;
     if (column.is_text) {
       column.refusal.emplace("holds text, not numbers", "name another column with " + setting("columns"),
                              table.heading(index));
-      continue;
-    }
-    if (is_unscaled(object)) {
+    } else if (is_unscaled(channels[index])) {
       column.refusal.emplace("the values are raw ones of DAQmx, which need its scaling",
                              "export the channel scaled, as a TDMS file of doubles or as CSV", table.heading(index));
-      continue;
+    } else {
+      column.numbers.reserve(column.count);
+      wanted.emplace(channels[index].number, &column.numbers);
     }
-    const double epoch = epoch_of(file, object);
-    column.numbers.reserve(column.count);
-    for (const TdmsPiece& piece : object.pieces) read_piece(file, object, piece, epoch, column.numbers);
   }
+  if (!wanted.empty()) read_tdms_values(file, wanted);
 }
 
 void add_facts(const TdmsObject& object, RawTable& table) {

@@ -8,10 +8,10 @@
 #include <tuple>
 #include <utility>
 
-#include "ingest/column_names.hpp"
 #include "ingest/content_hash.hpp"
 #include "ingest/limits.hpp"
 #include "ingest/numbers.hpp"
+#include "ingest/raw_table.hpp"
 #include "ingest/reader.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -90,6 +90,7 @@ class File {
  public:
   File(const InputFile& file, RawTable& table) : path_(file.path()), table_(table) {
     bytes_ = file.read_text(0, file.size());
+    table_.rows.clear();
   }
 
   void read() {
@@ -311,10 +312,9 @@ class File {
     return table_.columns.back().rows;
   }
 
-  /// The first rows of a table are there from the beginning.
   std::size_t add_rows() {
-    if (rows_made_ == table_.rows.size()) table_.rows.emplace_back();
-    return rows_made_++;
+    table_.rows.emplace_back();
+    return table_.rows.size() - 1;
   }
 
   std::string path_, bytes_;
@@ -324,7 +324,6 @@ class File {
   std::map<std::uint64_t, std::size_t> times_;  // columns of abscissas, by their content
   std::vector<std::string> skipped_;
   std::map<std::tuple<std::uint64_t, double, double>, std::size_t> rows_;  // of even spacing: count, start, interval
-  std::size_t rows_made_ = 0;
 };
 
 /// A mark alone in the first line that says something, then the number of a dataset.
