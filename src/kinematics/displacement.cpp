@@ -208,8 +208,9 @@ void make_velocity_of_displacement(Trace& trace, std::vector<std::string>& notes
   std::vector<double>& leading = block ? trace.block_position : trace.drive_position;
   clean(trace.block_position, "x_b", notes);
   clean(trace.drive_position, "x_d", notes);
-  const double frequency = frequency_of(leading, step);
-  const std::size_t half = frequency > 0 ? half_window(frequency, step) : kWidestHalf;
+  const std::size_t some = std::min(trace.size(), kThinned), from = (trace.size() - some) / 2;
+  const std::size_t half = window_by_prediction(std::span(leading).subspan(from, some), step, kShortestHalf,
+                                                std::min(kWidestHalf, trace.size() / 20));
   const LocalDerivatives b = block ? local_derivatives(trace.block_position, step, half) : at_rest(trace.size());
   const LocalDerivatives d = drive ? local_derivatives(trace.drive_position, step, half) : at_rest(trace.size());
   trace.velocity = b.slope;

@@ -285,11 +285,9 @@ inline constexpr double kUnevenRepeats = 0.15, kFineChanges = 8;
 inline constexpr double kCoarseStep = 0.01, kTooCoarseFriction = 0.03, kTooCoarse = 0.015;
 
 // ---- samples that are missing
-/// Change of the velocity within a sample over its noise that is seen, and over the changes beside it: a motion whose
-/// slip has ten samples changes by a third more.
-inline constexpr double kJumpNoise = 12, kJumpOver = 1.6;
-/// How nearly changes are alike where the motion is smooth.
-inline constexpr double kJumpSmooth = 0.3;
+/// Change of the velocity within a sample over the changes beside it: a motion whose slip has ten samples changes by a
+/// third more. How nearly changes are alike where the motion is smooth.
+inline constexpr double kJumpOver = 1.6, kJumpSmooth = 0.3;
 /// Jumps in all and per plateau (a blow on the rig now and then is no lost sample), and per plateau from rest, or to
 /// it: a stiff rig breaks away within a sample.
 inline constexpr std::size_t kFewestJumps = 5;
@@ -323,49 +321,45 @@ inline constexpr double kTurnsRound = 0.1;
 inline constexpr double kAlikePowers = 0.5;
 
 // ---- faults of the recording
-/// Samples of which a distribution can be seen.
-inline constexpr std::size_t kFewestDistributed = 64;
-/// Values looked at for a distribution, and for how often a channel repeats one; part of those from which it is
-/// quantised and repeats its extremes too.
-inline constexpr std::size_t kThinned = 16384, kValuesForRepeats = 20000;
-inline constexpr double kRepeatsOfSteps = 0.2;
-/// Samples in a row at an extreme that are no chance, and all of them at a limit of the range: two such rows.
-inline constexpr std::size_t kShortestAtEnd = 3, kFewestAtEnd = 6;
-/// Steps by which a run at an extreme would have passed it, below which nothing was cut: the flattest peak of a law at
-/// break-away, a fourth power of time, stays 5 times as long in its last step as in the one before.
-inline constexpr double kStepsOfATurn = 8;
-/// Part of the record at a limit, from which mu_s or the law's decay is off by more than its error. Rounding over the
-/// range of a channel, and part of the declared range from which a channel is at its end. Part of a
-/// record that stands still or is frozen, and that is lost or spiked: the rest does not make up for more.
-inline constexpr double kMuchClipped = 1e-3, kRoundingOfRange = 1e-6, kAtDeclaredRange = 0.995, kMuchFrozen = 0.05,
-                        kMuchFaulty = 1e-3;
-/// How far a marker value lies beyond the range of all but two values in a thousand, over that range: no channel of a
-/// machine leaves its range so far within a sample. The samples beside it lie within the second.
-inline constexpr double kMarkerReach = 3, kMarkerShoulder = 0.5;
-/// Samples of markers that are not repeated exactly: a slip of more samples is a slip. Of a stretch that a velocity
-/// leaves as it entered it, each within a sample, over which so little of the jump is left, and of its range at least.
-inline constexpr std::size_t kWidestSpike = 2, kWidestExcursion = 64;
-inline constexpr double kExcursionQuiet = 0.25, kExcursionBack = 0.5, kExcursionDepth = 0.01;
+/// Samples of which a distribution can be seen, and how many are looked at for one.
+inline constexpr std::size_t kFewestDistributed = 64, kThinned = 16384;
+/// Degrees of freedom of innovations: the noise of a laser has three, and from the second on it is as good as normal.
+inline constexpr double kHeaviestTail = 3, kNormalTail = 200;
+/// How far a jump to an outlier must go at least, over the range of the channel, and in steps of a converter: nearer
+/// ones are as likely noise, and leaving those out would bias the noise floor. And the most that innovations reach, over
+/// what one in ten exceeds: t of three degrees does so once in a hundred thousand; the kinks of a slip are less.
+inline constexpr double kLeastOutlier = 0.01, kStepsOfOutlier = 2.5, kMostReach = 30;
+/// How far a marker lies beyond the range of all but two values in a thousand, over that range: no channel of a machine
+/// leaves its range so far within a sample.
+inline constexpr double kMarkerReach = 3;
+/// What a channel changes by before an outlier, within it, and over it, of the jump; samples of one at the most; and
+/// part of the range by which the other channel changes where it is a slip of few samples: friction falls by most of
+/// it.
+inline constexpr double kQuietBeside = 0.25, kSlipOfSamples = 0.3;
+inline constexpr std::size_t kWidestOutlier = 64;
 /// Part of the usual largest sliding speed from which on a velocity does not come to zero by itself within a sample,
 /// and scatters of friction by which it leaves its level at rest, of so many samples to either side. Smaller: a plug
 /// that is loose in noisy friction passes for rest; larger: a rest under nearly the friction of sliding passes for a
 /// loose plug.
 inline constexpr double kOfUsualSpeed = 0.25, kFrictionStays = 2;
 inline constexpr std::size_t kBesideZeros = 50;
-/// A lone sample is so many standard deviations of the noise from both neighbours, and so much of the range, and so
-/// many steps of a converter. Nearer ones are as likely noise; leaving those out would bias the noise floor.
-inline constexpr double kSpikeSigmas = 20, kSpikeDepth = 0.05, kSpikeSteps = 2.5;
-/// Part of the range by which the other channel changes where a lone sample is a slip: friction falls by most of it.
-inline constexpr double kSlipOfSamples = 0.3;
-/// Samples of one value in a row that a channel with noise and fine steps cannot hold; of zeros, a loose plug's value,
-/// fewer will do; samples of a fault over which the motion is not known.
-inline constexpr std::size_t kShortestFrozen = 16, kShortestZero = 3, kShortestStretch = 16;
-/// Such a channel repeats a value in fewer pairs of neighbours than the first (a coarse converter repeats more), and
-/// turns in more of its samples than the second (white noise in 2 of 3, a motion without noise in one of a hundred).
+/// Samples of one value in a row that chance must not explain, at least; and samples over which the motion is not
+/// known.
+inline constexpr std::size_t kShortestRun = 3, kShortestStretch = 16;
+/// A channel with noise and fine steps repeats a value in fewer samples than the first (a coarse converter repeats
+/// more), and turns in more than the second (white noise in 2 of 3, a motion without noise in one of a hundred).
 inline constexpr double kFewRepeats = 0.02, kManyTurns = 0.05;
-/// Bins of a channel's range, the widest dense part as a part of it, which so many of some parts of a record reach.
-inline constexpr std::size_t kClipBins = 4096, kNarrowestRange = 16, kPartsOfRange = 16;
-inline constexpr double kReachIt = 0.25;
+/// Part of its samples that a coarse converter repeats: no limit shows in such a channel, nor a run that this explains.
+inline constexpr double kRepeatsOfSteps = 0.2;
+/// Samples of a run at the end of the range over those one step inside: the flattest peak of a law at break-away, a
+/// fourth power of time, stays 5 times as long in its last step as in the one before.
+inline constexpr double kStepsOfATurn = 8;
+/// Part of the record at a limit, from which mu_s or the law's decay is off by more than its error; part of the
+/// declared range from which a channel is at its end; part of a record that stands still or is left out, and of gaps in
+/// time: the rest does not make up for more.
+inline constexpr double kMuchClipped = 1e-3, kAtDeclaredRange = 0.995, kMuchFrozen = 0.05, kMuchFaulty = 1e-3;
+/// Bins of a channel's range, and the widest dense part as a part of it.
+inline constexpr std::size_t kClipBins = 4096, kNarrowestRange = 16;
 /// Density of samples at the limit over that beside it. A turning point (a parabola) has 3 over any width, a peak 1:
 /// the first needs quiet (noise over that elsewhere), the second, of a block that sticks and slips, does not.
 inline constexpr double kDenseQuiet = 2, kDenseAlone = 6, kQuiet = 0.7;
@@ -375,10 +369,6 @@ inline constexpr double kStillRises = 0.5, kClippedErrors = 4, kCarriedOn = 0.02
 /// Samples at a limit: fewer do not bear on a fit; samples between two at it that are taken for clipped too (noise
 /// brings them below it), and beside a stretch.
 inline constexpr std::size_t kFewestClipped = 32, kOneClippedIn = 2000, kClipHole = 32, kClipMargin = 8;
-/// Samples of a mean in which a dense part is looked for behind noise as wide as its own, how dense it must be, and
-/// means in a row: friction that is held is so for a good part of a stick.
-inline constexpr std::size_t kSmoothedOver = 32, kFewestSmoothed = 3;
-inline constexpr double kDenseSmoothed = 8;
 /// Changes in a sample that an amplifier cannot exceed: over a converter's steps, how alike, and how many in a row.
 inline constexpr double kSlewSteps = 16, kSlewWidth = 0.02;
 inline constexpr std::size_t kShortestSlew = 8;

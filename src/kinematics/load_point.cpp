@@ -8,9 +8,9 @@
 #include <numbers>
 #include <utility>
 
+#include "channel_samples.hpp"
 #include "limits.hpp"
 #include "motion_channels.hpp"
-#include "recording_faults.hpp"
 #include "statistics/piecewise_lines.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/output/digits.hpp"
@@ -149,8 +149,8 @@ void drop_ends_of(Trace& trace, std::size_t head, std::size_t tail) {
 /// Lone samples, marker values and what a loose plug leaves of friction take no part. Behind a change of speed a lone
 /// sample may be the answer, of which few samples were taken. Few samples: nothing is known of what is usual.
 void leave_out_faults(Trace& trace, Motion& motion) {
-  const ChannelOutline friction(trace.friction), speed(trace.velocity);
-  const ChannelFaults faults = find_channel_faults(friction, speed, false);
+  ChannelSamples friction(trace.friction);
+  find_outliers_and_held(friction, ChannelSamples(trace.velocity), false);
   const auto answers = [&](const SampleSpan& span) {
     return std::any_of(motion.load_point.begin(), motion.load_point.end(), [&](const LoadPointPhase& phase) {
       const auto at = std::upper_bound(trace.time.begin(), trace.time.end(), phase.begin) - trace.time.begin();
@@ -159,7 +159,7 @@ void leave_out_faults(Trace& trace, Motion& motion) {
     });
   };
   std::vector<SampleSpan> spans;
-  for (const auto* found : {&faults.markers, &faults.spikes, &faults.frozen})
+  for (const auto* found : {&friction.outliers, &friction.held})
     std::copy_if(found->begin(), found->end(), std::back_inserter(spans), [&](const auto& s) { return !answers(s); });
   if (spans.empty()) return;
   std::sort(spans.begin(), spans.end(), [](const auto& a, const auto& b) { return a.begin < b.begin; });

@@ -53,23 +53,8 @@ MotionStages::MotionStages(Trace trace, const Instruments& instruments, const Mo
 
 /// What the recorder did: its range and its gaps.
 void MotionStages::look_at_recording() {
-  ChannelOutlines channels;
-  run_tasks(2, threads_, [&](std::size_t k) {
-    if (k == 0) {
-      channels.friction = ChannelOutline(trace_.friction);
-    } else {
-      channels.velocity = ChannelOutline(trace_.velocity);
-    }
-  });
-  spoilt_.emplace(trace_, channels, threads_);
-  spoilt_->add_unsure(kinematics::unsure_samples(trace_));
-  range_ends_ = kinematics::range_ends(trace_, channels, threads_);
-  steps_ = {channels.friction.step,
-            channels.velocity.step,
-            range_ends_.friction[1].at - range_ends_.friction[0].at,
-            range_ends_.largest_velocity,
-            kinematics::repeats_unevenly(trace_.friction),
-            kinematics::repeats_unevenly(trace_.velocity)};
+  samples_.emplace(trace_, threads_);
+  samples_->add_unsure(kinematics::unsure_samples(trace_));
 }
 
 void MotionStages::correct_declared() {
@@ -129,7 +114,7 @@ void MotionStages::find_speed_steps() {
   disc_.known = true;
   disc_.largest = kinematics::largest_of(disc_.varying);
   for (const kinematics::SampleSpan& change : kinematics::changes_between(speed_levels_, search_.blocks.length)) {
-    spoilt_->add_unknown(change);
+    samples_->add_unknown(change);
   }
   if (trace_.conditions.radius.known()) {
     trace_.disc_speed = disc_.varying;
@@ -231,7 +216,7 @@ void MotionStages::settle_signs_and_levels() {
   const bool constant = disc_.known && (motion_.disc_velocity.empty() || undoes_ripple_);
   motion_.constant_disc_velocity = constant ? disc_.constant : 0;
   motion_.sticks = search_.sticks;
-  motion_.velocity_noise = std::max(search_.noise, steps_.velocity / std::sqrt(12.0));
+  motion_.velocity_noise = std::max(search_.noise, samples_->velocity_step() / std::sqrt(12.0));
   motion_.velocity_noise = std::max(motion_.velocity_noise, kinematics::usual_error(motion_.velocity_std_error));
   if (search_.sticks) {
     const double level = search_.plateaus.level;

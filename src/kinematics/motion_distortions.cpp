@@ -18,34 +18,30 @@ namespace tribofit::kinematics {
 
 void MotionStages::undo_distortions() {
   if (is_block() && search_.sticks && speed_is_constant()) {
-    spoilt_->add_standstill(search_, final_level(search_.plateaus), trace_);
+    samples_->add_standstill(search_, final_level(search_.plateaus), trace_);
   }
   if (options_.friction_low_pass) {
     motion_.friction_low_pass = *options_.friction_low_pass;
     motion_.friction_filter_source = FilterSource::other_runs;
   }
-  if (!trace_.velocity_std_error.empty()) return;  // the velocity was made from another channel
-  if (range_ends_.velocity_slew > 0) return;       // nothing of this brings back what an amplifier did not follow
+  if (!trace_.velocity_std_error.empty()) return;    // the velocity was made from another channel
+  if (samples_->velocity_is_slew_limited()) return;  // nothing of this brings back what an amplifier did not follow
   undo_zero_drift();
   find_zero();
   undo_zero();
-  if (search_.sticks && !steps_.velocity_repeats) {
-    const double moving = is_block() ? 0 : noise_in_motion(trace_.velocity);
-    const double noise = std::max({search_.noise, steps_.velocity, moving});
-    jumps_ = find_lost_samples(trace_, search_, disc_, noise, motion_.step, threads_);
-  }
+  if (search_.sticks && !samples_->velocity_repeats()) samples_->find_lost(trace_, search_, disc_);
   // What was lost of slips is missing in the way of the block.
-  if (!are_lost(jumps_, search_.plateaus.runs.size())) undo_compression();
+  if (!samples_->lost().any(search_.plateaus.runs.size())) undo_compression();
   undo_low_pass();
   undo_clock_drift();
   find_friction_filter();
 }
 
 void MotionStages::undo_zero_drift() {
-  const bool asked = options_.undo_distortions && motion_.high_pass == 0 && !spoilt_->any();
+  const bool asked = options_.undo_distortions && motion_.high_pass == 0 && !samples_->any();
   if (!asked || !is_block() || !search_.sticks || !speed_is_constant()) return;
   positions_ = positions_in_plateaus(trace_.time, trace_.velocity, search_, threads_);
-  zero_drift_ = find_zero_drift(trace_, search_, positions_, steps_.velocity);
+  zero_drift_ = find_zero_drift(trace_, search_, positions_, samples_->velocity_step());
   if (zero_drift_.value == 0) return;
   const double middle = 0.5 * (trace_.time.front() + trace_.time.back());
   for (std::size_t i = 0; i < trace_.size(); ++i) trace_.velocity[i] -= zero_drift_.value * (trace_.time[i] - middle);
@@ -57,10 +53,10 @@ void MotionStages::undo_zero_drift() {
 
 /// A block on a spring goes nowhere: what v_b is on average is an error of the reading.
 void MotionStages::find_zero() {
-  if (motion_.high_pass > 0 || spoilt_->any()) return;
+  if (motion_.high_pass > 0 || samples_->any()) return;
   if (is_block() && search_.sticks) {
     if (positions_.time.empty()) positions_ = positions_in_plateaus(trace_.time, trace_.velocity, search_, threads_);
-    zero_ = kinematics::find_zero(search_, disc_, positions_, steps_.velocity);
+    zero_ = kinematics::find_zero(search_, disc_, positions_, samples_->velocity_step());
   }
   const bool rests_nowhere = trace_.velocity_kind == VelocityKind::relative && !search_.sticks;
   if (rests_nowhere && speed_is_constant()) zero_ = find_zero_of_relative(trace_, search_, disc_);
@@ -75,18 +71,10 @@ void MotionStages::undo_zero() {
   find_plateau();
 }
 
-/// An end of the velocity's range at which slips gather: they are cut off there, not compressed.
-bool MotionStages::clips_slips() const {
-  const auto is_cut = [&](const EndRuns& end) {
-    const double level = end.saturation.count > 0 ? end.saturation.level : end.at;
-    const bool is_dense = end.count >= kFewestAtEnd || end.saturation.count > 0;
-    return is_dense && std::abs(level - search_.plateaus.level) > 0.5 * search_.plateaus.depth;
-  };
-  return is_cut(range_ends_.velocity[0]) || is_cut(range_ends_.velocity[1]);
-}
-
 void MotionStages::undo_compression() {
-  if (zero_.kind != BlockZero::Kind::uneven || !disc_.known || !speed_is_constant() || clips_slips()) return;
+  if (zero_.kind != BlockZero::Kind::uneven || !disc_.known || !speed_is_constant() ||
+      samples_->clips_slips(search_.plateaus))
+    return;
   if (std::abs(final_level(search_.plateaus) - disc_.constant) > kPlateauHolds * std::abs(zero_.mean.value)) return;
   const Compression found = find_compression(trace_, search_, zero_.mean);
   if (found.part.value == 0 || std::abs(found.part.value) > kMostCompressed || !options_.undo_distortions) return;
@@ -119,8 +107,9 @@ void MotionStages::undo_low_pass() {
     relative = trace_.velocity;
     for (std::size_t i = 0; i < relative.size(); ++i) relative[i] -= disc_.varying[i];
   }
-  low_pass_ = find_low_pass(relative.empty() ? trace_.velocity : relative, search_.plateaus.level,
-                            std::max(search_.noise, steps_.velocity / std::sqrt(12.0)), motion_.step, threads_);
+  low_pass_ =
+      find_low_pass(relative.empty() ? trace_.velocity : relative, search_.plateaus.level,
+                    std::max(search_.noise, samples_->velocity_step() / std::sqrt(12.0)), motion_.step, threads_);
   const bool asked = options_.undo_distortions && !instruments_.vibrometer.low_pass;
   if (!low_pass_.is_first_order || !asked) return;
   motion_.velocity_low_pass = {low_pass_.tau, low_pass_.std_error};
@@ -129,7 +118,7 @@ void MotionStages::undo_low_pass() {
   for (const double at : low_pass_.resticks) {
     const auto first = static_cast<std::size_t>(std::max(0.0, std::ceil(at - static_cast<double>(smeared))));
     const auto end = static_cast<std::size_t>(std::max(0.0, std::floor(at + static_cast<double>(smeared)) + 1));
-    spoilt_->add_smeared({std::min(first, trace_.size()), std::min(end, trace_.size())});
+    samples_->add_unsure({{std::min(first, trace_.size()), std::min(end, trace_.size())}});
   }
   motion_.notes.push_back(
       fmt::format("velocity: a low-pass at {}; corrected", frequency_text(1 / (2 * std::numbers::pi * low_pass_.tau))));

@@ -9,6 +9,7 @@
 #include "limits.hpp"
 #include "motion_stages.hpp"
 #include "plateau_ratio.hpp"
+#include "resolution.hpp"
 #include "tribofit/execution/parallel.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/kinematics/health.hpp"
@@ -21,11 +22,9 @@ namespace tribofit::kinematics {
 
 void MotionStages::check_clipping() {
   recorded_ = kinematics::recorded_plateau(search_, disc_, trace_.velocity_kind);
-  clipping_ = kinematics::check_clipping(range_ends_, trace_, instruments_,
-                                         {plateau_as_recorded(), is_block() && search_.sticks}, motion_.step, *spoilt_);
-  const auto lost = clipping_.status == HealthItem::Status::ok ? jumps_ : LostSamples{};
-  drop_outs_ = kinematics::check_drop_outs(trace_, *spoilt_, lost, search_.plateaus.runs.size(), motion_.step);
-  motion_.faults = spoilt_->take();
+  clipping_ = samples_->check_clipping(trace_, instruments_, {plateau_as_recorded(), is_block() && search_.sticks});
+  drop_outs_ = samples_->check_drop_outs(trace_, search_.plateaus.runs.size());
+  motion_.faults = samples_->take();
 }
 
 /// Where the velocity as recorded repeats in stick when there is no noise, and gathers when there is.
@@ -57,7 +56,7 @@ void MotionStages::check_health() {
       [&] { return kinematics::check_speed_ripple(motion_, ripple_); },
       [&] { return kinematics::check_run_up(motion_, options_.trim, run_up_); },
       [&] { return check_level(); },
-      [&] { return kinematics::check_resolution(steps_, motion_.friction_kind, search_.noise); },
+      [&] { return samples_->check_resolution(motion_.friction_kind, search_.noise); },
       [&] { return kinematics::check_friction_zero(motion_); },
   };
   std::vector<HealthItem> found(std::size(checks));
@@ -73,14 +72,14 @@ HealthItem MotionStages::check_band() const {
   const std::span<const double> velocity =
       velocity_was_measured ? std::span<const double>(motion_.relative_velocity) : std::span<const double>();
   HealthItem item = kinematics::check_bandwidth(motion_, velocity, low_pass_);
-  if (steps_.friction_repeats || steps_.velocity_repeats) {
+  if (samples_->friction_repeats() || samples_->velocity_repeats()) {
     item.status = HealthItem::Status::problem;
     item.message += fmt::format(
         "; {} at uneven places, as behind a running median or from a recorder with a slower clock: break-away and "
         "re-stick are cut off or late, mu_s and the law's decay (alpha) are unreliable; record without it",
-        !steps_.friction_repeats  ? "the velocity repeats values"
-        : steps_.velocity_repeats ? "friction and velocity repeat values"
-                                  : "friction repeats values");
+        !samples_->friction_repeats()  ? "the velocity repeats values"
+        : samples_->velocity_repeats() ? "friction and velocity repeat values"
+                                       : "friction repeats values");
   }
   if (friction_fall_ > 0) {
     item.status = std::max(item.status, HealthItem::Status::warning);
@@ -138,10 +137,10 @@ HealthItem MotionStages::check_level() const {
 void MotionStages::compare_plateau() {
   // What moves a velocity that is nonlinear from omega r is neither radius nor gain.
   const bool is_nonlinear =
-      range_ends_.velocity_slew > 0 || (zero_.kind == BlockZero::Kind::uneven && !motion_.compression.any());
+      samples_->velocity_is_slew_limited() || (zero_.kind == BlockZero::Kind::uneven && !motion_.compression.any());
   if (!is_block() || !speed_was_stated_ || !search_.sticks || is_nonlinear) return;
   kinematics::PlateauRatio ratio = plateau_ratio(motion_, plateaus_in_motion(), search_.blocks.length);
-  const double rounding = kinematics::rounding_of_level(steps_.velocity, search_.noise);
+  const double rounding = kinematics::rounding_of_level(samples_->velocity_step(), search_.noise);
   if (disc_.largest > 0) ratio.std_error = std::hypot(ratio.std_error, rounding / disc_.largest);
   if (disc_.largest > 0) ratio.std_error = std::hypot(ratio.std_error, motion_.velocity_zero.std_error / disc_.largest);
   motion_.plateau_ratio = ratio.value;

@@ -7,15 +7,13 @@
 #include "corrections.hpp"
 #include "health_checks.hpp"
 #include "high_pass.hpp"
-#include "lost_samples.hpp"
 #include "low_pass.hpp"
 #include "net_displacement.hpp"
 #include "plateau.hpp"
 #include "plateau_search.hpp"
-#include "resolution.hpp"
+#include "recorded_samples.hpp"
 #include "ripple.hpp"
 #include "speed_steps.hpp"
-#include "spoilt_samples.hpp"
 #include "tribofit/kinematics/motion.hpp"
 
 namespace tribofit::kinematics {
@@ -55,7 +53,6 @@ class MotionStages {
   void undo_low_pass();
   void undo_clock_drift();
   void find_friction_filter();
-  bool clips_slips() const;
   void undo_ripple_in_high_pass();
   std::size_t run_up() const;
   Plateaus plateaus_in_motion() const { return plateaus_within(search_, motion_.trimmed, motion_.size()); }
@@ -70,9 +67,7 @@ class MotionStages {
   Motion motion_;
 
   // Of the channels as recorded.
-  std::optional<SpoiltSamples> spoilt_;
-  RangeEnds range_ends_;
-  RecordedSteps steps_;  ///< of a coarse converter
+  std::optional<RecordedSamples> samples_;
   HealthItem clipping_, drop_outs_;
   Ends lost_;  ///< to corrections
   Disc disc_;
@@ -83,7 +78,6 @@ class MotionStages {
   HighPassEstimate sag_;
   double plateau_ = 0;  ///< of v_b (v_r where that was measured), towards which the record tends [m/s]
   std::optional<RecordedPlateau> recorded_;
-  LostSamples jumps_;         ///< of the velocity as recorded
   BlockPositions positions_;  ///< of the block, until the velocity is changed
   Estimate zero_drift_;       ///< that was taken off v_b [m/s^2]
   BlockZero zero_;

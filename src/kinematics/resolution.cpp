@@ -67,31 +67,4 @@ double rounding_of_level(double step, double spread) {
   return uniform * std::exp(-2 * std::numbers::pi * std::numbers::pi * variance / (step * step));
 }
 
-HealthItem check_resolution(const RecordedSteps& steps, FrictionKind kind, double noise) {
-  HealthItem item{health_check::kResolution, HealthItem::Status::ok, "the steps of both channels are finer than noise"};
-  const auto coarse = [&](const std::string& sentence) {
-    item.message = item.status == HealthItem::Status::ok ? sentence : item.message + "; " + sentence;
-    if (item.status == HealthItem::Status::ok) item.status = HealthItem::Status::warning;
-  };
-  if (steps.velocity > 2 * noise && steps.velocity > 0) {
-    coarse(
-        fmt::format("velocity is recorded in steps of {} mm/s, coarser than its noise: the rounding is carried "
-                    "as noise, and a smaller gap between plateau and omega r is not named",
-                    general(1e3 * steps.velocity, 3)));
-    if (steps.velocity > kTooCoarse * steps.largest_velocity) {
-      item.status = HealthItem::Status::problem;
-      item.message += "; the law's decay (alpha) is unreliable, use a smaller range of the vibrometer";
-    }
-  }
-  if (steps.friction > kCoarseStep * steps.friction_range) {
-    coarse(fmt::format("friction is recorded in steps of {}{}: the rounding is part of the noise floor",
-                       general(steps.friction, 3), kind == FrictionKind::force ? " N" : ""));
-    if (steps.friction > kTooCoarseFriction * steps.friction_range) {
-      item.status = HealthItem::Status::problem;
-      item.message += "; mu_k and the law's decay (alpha) are unreliable";
-    }
-  }
-  return item;
-}
-
 }  // namespace tribofit::kinematics

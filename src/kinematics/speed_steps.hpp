@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "channel_samples.hpp"
 #include "plateau_search.hpp"
-#include "recording_faults.hpp"
 #include "tribofit/kinematics/motion.hpp"
 
 namespace tribofit::kinematics {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "recording_faults.hpp"
+#include "channel_samples.hpp"
 #include "tribofit/ingest/trace.hpp"
 
 namespace tribofit::kinematics {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 #include "limits.hpp"
 #include "linear_algebra.hpp"
@@ -142,6 +144,7 @@ LocalDerivatives local_derivatives(std::span<const double> signal, double step, 
   out.noise = std::sqrt(usual);
   const std::array<std::size_t, 4> tried = {0, half / 2, count - 1 - half / 2, count - 1};
   constexpr double kTooNear = 10;
+  double squares = 0;
   for (std::size_t i = 0; i < n; ++i) {
     Piece piece = piece_with(i, corners, n);
     const double widening = piece.end - piece.begin < count ? kTooNear : 1;
@@ -164,8 +167,19 @@ LocalDerivatives local_derivatives(std::span<const double> signal, double step, 
     out.second_derivative[i] = (*best)(2, signal, i) / (step * step);
     out.slope_std_error[i] = widening * out.noise * best->noise_gain[1] / step;
     out.second_derivative_std_error[i] = widening * out.noise * best->noise_gain[2] / (step * step);
+    const double of_itself = best->weights[0](static_cast<Eigen::Index>(best->at));
+    if (of_itself < 1) squares += std::pow((signal[i] - out.value[i]) / (1 - of_itself), 2);
   }
+  out.prediction_error = std::sqrt(squares / static_cast<double>(n));
   return out;
+}
+
+std::size_t window_by_prediction(std::span<const double> signal, double step, std::size_t narrowest,
+                                 std::size_t widest) {
+  std::pair<double, std::size_t> best{std::numeric_limits<double>::infinity(), narrowest};
+  for (std::size_t half = narrowest; half <= widest; half += 1 + half / 4)
+    best = std::min(best, {local_derivatives(signal, step, half).prediction_error, half});
+  return best.second;
 }
 
 SmoothedDerivatives smoothed_derivatives(std::span<const double> signal, double step, std::size_t half) {

@@ -9,6 +9,7 @@ namespace tribofit {
 /// A sampled signal with its first two derivatives and their standard errors.
 struct LocalDerivatives {
   double noise = 0;                                     ///< standard deviation of a sample
+  double prediction_error = 0;                          ///< usual distance of a sample from what the others say of it
   std::vector<double> value, slope, second_derivative;  ///< of the signal, d/dt, d^2/dt^2
   std::vector<double> slope_std_error, second_derivative_std_error;
 };
@@ -24,6 +25,12 @@ struct LocalDerivatives {
 /// samples times window.
 LocalDerivatives local_derivatives(std::span<const double> signal, double step, std::size_t half,
                                    std::span<const std::size_t> corners = {});
+
+/// Samples to either side over which local_derivatives() predicts each sample best from the others (leave-one-out
+/// cross-validation): wide where noise is more than what the signal does within the window, narrow where it is less.
+/// narrowest, widest: to be tried. Cost: that of local_derivatives() for some twenty windows.
+std::size_t window_by_prediction(std::span<const double> signal, double step, std::size_t narrowest,
+                                 std::size_t widest);
 
 /// A sampled signal and its first two derivatives, all three as means over the same short stretch with the same
 /// weights: what is linear in signal and derivatives holds of the means exactly, however fast the signal turns.

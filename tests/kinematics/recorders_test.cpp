@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "stick_slip_truth.hpp"
 #include "tribofit/kinematics/motion.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::recorders {
 namespace {
@@ -221,6 +223,109 @@ TEST(Recorders, FrictionThatLevelsOffIsClipped) {
         EXPECT_EQ(clipping.status, HealthItem::Status::ok) << rpm << ' ' << noise << ' ' << flat << clipping.message;
       }
     }
+  }
+}
+
+/// Noise with the tails of a laser's: t with three degrees of freedom. No sample is lost for it, and hardly one left
+/// out.
+TEST(Recorders, HeavyTailsAreNoFault) {
+  for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+    truth::Rig rig;
+    rig.duration = 8;
+    rig.friction_noise = rig.velocity_noise = 0;
+    rig.seed = seed;
+    Trace trace = truth::simulate(rig).trace;
+    std::mt19937_64 random(seed);
+    std::student_t_distribution<double> noise(3);
+    for (std::size_t i = 0; i < trace.size(); ++i) {
+      trace.friction[i] += 0.002 * noise(random);
+      trace.velocity[i] += 3e-5 * noise(random);
+    }
+    const Motion motion = compute_motion(std::move(trace));
+    for (const HealthItem& i : motion.health) EXPECT_NE(i.status, HealthItem::Status::problem) << i.message;
+    std::size_t left_out = 0;
+    for (std::size_t i = 0; i < motion.size(); ++i) left_out += motion.has_fault(i, SampleFault::any) ? 1U : 0U;
+    EXPECT_LE(left_out, 10U) << seed;
+  }
+}
+
+/// A drive that moves at one speed, dwells and comes back: its strokes are motion, and friction that stays where it was
+/// left is no limit of a range.
+TEST(Recorders, DwellsOfADriveAreNoFault) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    for (const bool encoder : {false, true}) {  // reads exactly zero at rest
+      std::mt19937_64 random(seed);
+      std::normal_distribution<double> noise;
+      Trace trace;
+      trace.velocity_kind = VelocityKind::relative;
+      double friction = 0.3;
+      for (std::size_t i = 0; i < 8000; ++i) {
+        const std::size_t place = i % 500, within = place % 250;  // 2 s forth, 0.5 s rest, the same back
+        const double ramp =
+            std::min({1.0, 0.25 * static_cast<double>(within + 1), 0.25 * static_cast<double>(200 - within)});
+        const double v = within >= 200 ? 0 : (place < 250 ? 0.005 : -0.005) * ramp;
+        if (v != 0) friction = v > 0 ? 0.3 : -0.3;
+        trace.time.push_back(0.01 * static_cast<double>(i));
+        trace.velocity.push_back(v + (encoder && v == 0 ? 0 : 2e-5 * noise(random)));
+        trace.friction.push_back(friction + (v == 0 ? 0.001 : 0.004) * noise(random));
+      }
+      trace.steps = {{0, trace.size(), "", {}}};
+      const Motion motion = compute_motion(std::move(trace));
+      EXPECT_EQ(item(motion, "clipping").status, HealthItem::Status::ok) << item(motion, "clipping").message;
+      EXPECT_EQ(item(motion, "drop-outs").status, HealthItem::Status::ok) << item(motion, "drop-outs").message;
+      EXPECT_TRUE(motion.faults.empty());
+    }
+  }
+}
+
+/// A display that shows 64 or 65 rpm.
+TEST(Recorders, AQuantisedSpeedIsNotCutOff) {
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> noise;
+  Trace trace;
+  trace.velocity_kind = VelocityKind::fixed_block;
+  trace.conditions.radius = {0.015, "file"};
+  double speed = 64.9;
+  for (std::size_t i = 0; i < 6000; ++i) {
+    speed += 0.1 * (64.9 - speed) + 0.1 * noise(random);
+    trace.time.push_back(0.1 * static_cast<double>(i));
+    trace.disc_speed.push_back(std::clamp(std::round(speed), 64.0, 65.0) * 2 * std::numbers::pi / 60);
+    trace.friction.push_back(0.4 + 0.01 * noise(random));
+  }
+  trace.steps = {{0, trace.size(), "", trace.conditions}};
+  const Motion motion = compute_motion(std::move(trace));
+  EXPECT_EQ(item(motion, "clipping").status, HealthItem::Status::ok) << item(motion, "clipping").message;
+  EXPECT_TRUE(motion.faults.empty());
+}
+
+/// Strokes of 10 mm at 5.00 mm/s with dwells, of which only the position was recorded: its slope is taken over as much
+/// as its noise asks for, and no more.
+TEST(Recorders, TheSpeedOfAStrokeIsThatOfItsPosition) {
+  for (const double scatter : {1e-7, 2e-6, 2e-5}) {
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> noise(0, scatter);
+    Trace trace;
+    trace.velocity_kind = VelocityKind::relative;
+    double position = 0;
+    std::vector<double> speeds;
+    for (std::size_t i = 0; i < 5000; ++i) {
+      const std::size_t place = i % 500;
+      speeds.push_back(place % 250 >= 200 ? 0 : place < 250 ? 0.005 : -0.005);
+      position += 0.01 * speeds.back();
+      trace.time.push_back(0.01 * static_cast<double>(i));
+      trace.drive_position.push_back(position + noise(random));
+      trace.friction.push_back(0.3 * (place < 250 ? 1 : -1) + 0.004 * noise(random) / scatter);
+    }
+    trace.steps = {{0, trace.size(), "", {}}};
+    const Motion motion = compute_motion(std::move(trace));
+    std::vector<double> moving, resting;  // well within a stroke or a dwell
+    for (std::size_t i = 0; i < motion.size(); ++i) {
+      const std::size_t place = (i + motion.trimmed) % 250;
+      if (place > 60 && place < 140) moving.push_back(std::abs(motion.relative_velocity[i]));
+      if (place == 225) resting.push_back(std::abs(motion.relative_velocity[i]));
+    }
+    EXPECT_NEAR(median(moving), 0.005, 5e-6) << scatter;
+    EXPECT_LT(median(resting), 2e-4) << scatter;
   }
 }
 
