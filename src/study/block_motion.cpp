@@ -23,11 +23,9 @@ std::optional<std::size_t> first_of(const std::vector<Cycle>& cycles, std::size_
 
 /// Sets beginning and end of the displacement by a straight line.
 void set_ends(double begin, double end, BlockMotion& out) {
-  const std::size_t n = out.size();
-  const double from = begin - out.displacement.front();
-  const double to = end - out.displacement.back();
-  for (std::size_t i = 0; i < n; ++i) {
-    const double part = static_cast<double>(i) / static_cast<double>(n - 1);
+  const double from = begin - out.displacement.front(), to = end - out.displacement.back();
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double part = static_cast<double>(i) / static_cast<double>(out.size() - 1);
     out.displacement[i] += from + part * (to - from);
   }
 }

@@ -57,29 +57,31 @@ double mean_speed(const Motion& motion, double radius) {
   return sum / static_cast<double>(motion.disc_velocity.size()) / radius;
 }
 
-/// What the effects of a fit say through one of their hooks, summed; 0 where none has it.
-template <class Say>
-double sum_over_effects(const Fit& fit, Say say) {
+/// What effects of a fit say of the rig.
+struct SaidOfRig {
+  double lateness = 0;           ///< how much later than v_b the fit has friction [s]
+  double mass_below_sensor = 0;  ///< [kg]
+};
+
+SaidOfRig said_of_rig(const Fit& fit) {
+  SaidOfRig out;
+  if (fit.parameters.empty()) return out;
   const std::vector<double> p = fit.values();
-  double sum = 0;
-  for_each_effect(fit.model, p.data(), [&](const auto& effect, const double* q) { sum += say(effect, q); });
-  return sum;
+  for_each_effect(fit.model, p.data(), [&]<class E>(const E&, const double* q) {
+    if constexpr (requires { E::reading_delay(q); }) out.lateness += E::reading_delay(q);
+    if constexpr (requires { E::mass_below_sensor(q); }) out.mass_below_sensor += E::mass_below_sensor(q);
+  });
+  return out;
 }
 
-/// How much later than v_b the fit has friction [s].
-double lateness(const Fit& fit) {
-  return sum_over_effects(fit, []<class E>(const E&, const double* q) {
-    if constexpr (requires { E::reading_delay(q); }) return E::reading_delay(q);
-    return 0.0;
-  });
-}
-
-/// Mass that the fit finds below the force sensor [kg].
-double mass_below_sensor(const Fit& fit) {
-  return sum_over_effects(fit, []<class E>(const E&, const double* q) {
-    if constexpr (requires { E::mass_below_sensor(q); }) return E::mass_below_sensor(q);
-    return 0.0;
-  });
+/// Why law and rig make no machine; empty where they do.
+std::string obstacle_of(const Fit& fit, const RigFit& rig, const Condition& radius, double speed) {
+  if (!rig.determined) return "the rig could not be identified: " + rig.reason;
+  if (!fit.converged || fit.parameters.empty()) {
+    return "no law could be fitted" + (fit.messages.empty() ? "" : ": " + fit.messages.front());
+  }
+  if (!radius.known()) return "the friction radius is not known: give it with --radius 15mm";
+  return speed > 0 ? "" : "the speed of the disc is not known: give it with --speed 4rpm";
 }
 
 /// A square root of a covariance, which need not have full rank.
@@ -105,7 +107,7 @@ bool can_be(const Machine& m) {
 
 RigFit rig_beside(const Fit& fit, const Motion& motion, const Segmentation& segmentation,
                   const Instruments& instruments) {
-  const double late = fit.parameters.empty() ? 0 : lateness(fit);
+  const double late = said_of_rig(fit).lateness;
   if (late == 0) return identify_rig(motion, segmentation, instruments);
   Motion aligned = motion;
   kinematics::shift_earlier(aligned.friction, late, motion.step);
@@ -116,16 +118,8 @@ IdentifiedMachine identified_machine(const Fit& fit, const RigFit& rig, const Mo
                                      const Segmentation& segmentation) {
   IdentifiedMachine out;
   const Condition& radius = motion.conditions.radius;
-  if (!rig.determined) out.reason = "the rig could not be identified: " + rig.reason;
-  if (out.reason.empty() && (!fit.converged || fit.parameters.empty())) {
-    out.reason = "no law could be fitted" + (fit.messages.empty() ? "" : ": " + fit.messages.front());
-  }
-  if (out.reason.empty() && !radius.known())
-    out.reason = "the friction radius is not known: give it with --radius 15mm";
   const double speed = radius.known() ? mean_speed(motion, radius.value) : 0;
-  if (out.reason.empty() && !(speed > 0)) {
-    out.reason = "the speed of the disc is not known: give it with --speed 4rpm";
-  }
+  out.reason = obstacle_of(fit, rig, radius, speed);
   if (!out.reason.empty()) return out;
   const bool by_load = motion.friction_kind == FrictionKind::coefficient && !rig.per_unit_load;
   out.machine = {rig.to_rig(), fit.model, fit.values(), by_load ? rig.load : 1, radius.value, speed};
@@ -138,7 +132,7 @@ IdentifiedMachine identified_machine(const Fit& fit, const RigFit& rig, const Mo
     out.covariance.friction.clear();
     out.notes.push_back("the errors of the law are not known: it is taken as exact");
   }
-  if (const double below = mass_below_sensor(fit); below != 0) {
+  if (const double below = said_of_rig(fit).mass_below_sensor; below != 0) {
     out.machine.rig.mass += rig.per_unit_load ? below / rig.load : below;
     out.notes.push_back("the mass that the law finds below the force sensor is added to that of the rig");
   }

@@ -141,7 +141,7 @@ MotionMeasures measure_motion(const Motion& motion, const Segmentation& s) {
   MotionMeasures out;
   out.values = {period, s.stick_time, s.amplitude, mean_with_error(break_away), mean_with_error(least), rms, line};
   for (const std::vector<double>& harmonic : harmonics) out.values.push_back(mean_with_error(harmonic));
-  for (const std::vector<double>& point : points) out.portrait.push_back(mean_with_error(point));
+  for (const std::vector<double>& point : points) out.values.push_back(mean_with_error(point));
   return out;
 }
 

@@ -17,10 +17,9 @@ struct MotionMeasureInfo {
 /// Measures of a record of stick-slip, each a mean over its cycles, by the same rules for a measured and a simulated
 /// one.
 struct MotionMeasures {
-  std::vector<Estimate> values;  ///< as motion_measures() lists them
-  /// Mean slip in the plane of displacement since break-away and v_b, at equal parts of the slip: x [m], then v_b
-  /// [m/s].
-  std::vector<Estimate> portrait;
+  /// As motion_measures() lists them; then the mean slip in the plane of displacement since break-away and v_b, at
+  /// equal parts of the slip: x [m], then v_b [m/s].
+  std::vector<Estimate> values;
 
   const Estimate& break_away() const { return values[3]; }
 };

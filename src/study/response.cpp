@@ -39,8 +39,7 @@ Response study_response(const Machine& machine, std::size_t harmonics, const Set
   const double fastest = 2 * machine.disc_velocity();  // of a slip, about
   out.force = 0.5 * machine.load *
               (friction_at_rest(machine.model.law(), law) - kinetic_friction(machine.model.law(), law, fastest));
-  const bool repeats = out.settled.regime == Regime::stick_slip || out.settled.regime == Regime::vibration;
-  if (repeats) {
+  if (out.settled.repeats()) {
     constexpr std::size_t kSamples = 16384;
     const SimulatedMotion motion = settled_motion(machine, out.settled, 1, kSamples, options);
     std::vector<double> force(motion.friction);
@@ -75,7 +74,6 @@ std::vector<Portrait> study_phase(const Machine& machine, const std::vector<doub
     Portrait portrait;
     portrait.velocity = v;
     portrait.settled = settle(at, options.settle);
-    const bool repeats = portrait.settled.regime == Regime::stick_slip || portrait.settled.regime == Regime::vibration;
     const double natural = 2 * std::numbers::pi / at.rig.natural_frequency();
     const double cycle = portrait.settled.frequency > 0 ? 1 / portrait.settled.frequency : natural;
     // The spring is wound up first.
@@ -86,7 +84,8 @@ std::vector<Portrait> study_phase(const Machine& machine, const std::vector<doub
         .duration = duration, .rate = std::min(static_cast<double>(options.samples) / cycle, kMostSamples / duration)};
     simulation.start = start_of(at, options.settle.start);
     portrait.start = motion_of(at, simulation, options.settle.sharpness);
-    if (repeats) portrait.cycle = settled_motion(at, portrait.settled, 1, options.samples, options.settle);
+    if (portrait.settled.repeats())
+      portrait.cycle = settled_motion(at, portrait.settled, 1, options.samples, options.settle);
     out.push_back(std::move(portrait));
   }
   return out;

@@ -100,15 +100,14 @@ class Predictions {
 
   /// With its error and the difference in those. given_break_away: at the mean break-away that the record has, by a
   /// straight line through the simulations; else their mean.
-  TwinMeasure::Simulated of(std::vector<Estimate> MotionMeasures::*list, std::size_t k, const Estimate& measured,
-                            bool given_break_away) const {
+  TwinMeasure::Simulated of(std::size_t k, const Estimate& measured, bool given_break_away) const {
     std::vector<double> x, y;
     double within = 0;
     for (const MotionMeasures& m : simulations_) {
-      if ((m.*list).empty() || !std::isfinite((m.*list)[k].value)) continue;
+      if (m.values.empty() || !std::isfinite(m.values[k].value)) continue;
       x.push_back(given_break_away ? m.break_away().value - break_away_ : 0);
-      y.push_back((m.*list)[k].value);
-      if (std::isfinite((m.*list)[k].std_error)) within += std::pow((m.*list)[k].std_error, 2);
+      y.push_back(m.values[k].value);
+      if (std::isfinite(m.values[k].std_error)) within += std::pow(m.values[k].std_error, 2);
     }
     const auto n = static_cast<double>(y.size());
     if (n < 4 || 2 * n < static_cast<double>(simulations_.size())) return {kNone, kNone, kNone};
@@ -140,8 +139,8 @@ class Predictions {
 /// Root mean square of the differences over the loop.
 double portrait_distance(const std::vector<Estimate>& measured, const Predictions& predictions) {
   double squares = 0, n = 0;
-  for (std::size_t k = 0; k < measured.size(); ++k) {
-    const double d = predictions.of(&MotionMeasures::portrait, k, measured[k], true).difference;
+  for (std::size_t k = motion_measures().size(); k < measured.size(); ++k) {
+    const double d = predictions.of(k, measured[k], true).difference;
     if (!std::isfinite(d)) continue;
     squares += d * d, n += 1;
   }
@@ -178,10 +177,10 @@ void add_column(const MotionMeasures& measured, const std::vector<MotionMeasures
   for (std::size_t k = 0; k + 1 < twin.measures.size(); ++k) {
     const Estimate& value = measured.values[k];
     const bool known = std::isfinite(value.value), at_break_away = &value != &measured.break_away();
-    add(twin.measures[k], known ? predictions.of(&MotionMeasures::values, k, value, at_break_away)
-                                : TwinMeasure::Simulated{kNone, kNone, kNone});
+    add(twin.measures[k],
+        known ? predictions.of(k, value, at_break_away) : TwinMeasure::Simulated{kNone, kNone, kNone});
   }
-  const double distance = portrait_distance(measured.portrait, predictions);
+  const double distance = portrait_distance(measured.values, predictions);
   add(twin.measures.back(), {distance, kNone, distance});
   twin.rms_difference.push_back(n > 0 && !missing ? std::sqrt(squares / n) : kNone);
 }
@@ -250,7 +249,7 @@ Twin compare_machines(const TwinOptions& options, TwinIdentification& all) {
   if (machines.empty()) return twin;
   const MotionMeasures measured = measure_motion(motion, segmentation);
   const bool force = motion.friction_kind == FrictionKind::force;
-  for (std::size_t k = 0; k < measured.values.size(); ++k) {
+  for (std::size_t k = 0; k < motion_measures().size(); ++k) {
     const MotionMeasureInfo& info = motion_measures()[k];
     const Estimate& m = measured.values[k];
     twin.measures.push_back(

@@ -12,8 +12,11 @@ namespace tribofit {
 
 namespace {
 
-template <class Known>
-[[noreturn]] void refuse(std::string_view what, std::string_view name, const Known& known) {
+/// The entry of that name.
+template <class Entry>
+const Entry& named(std::string_view what, std::string_view name, const std::vector<Entry>& known) {
+  const auto found = std::find_if(known.begin(), known.end(), [&](const Entry& entry) { return entry.name == name; });
+  if (found != known.end()) return *found;
   std::vector<std::string> names;
   std::string list;
   for (const auto& entry : known) {
@@ -75,10 +78,7 @@ std::vector<Variable> variables_of(const Machine& machine) {
 }
 
 Variable variable_named(const Machine& machine, std::string_view name) {
-  const std::vector<Variable> known = variables_of(machine);
-  const auto found = std::find_if(known.begin(), known.end(), [&](const Variable& v) { return v.name == name; });
-  if (found == known.end()) refuse("parameter", name, known);
-  return *found;
+  return named("parameter", name, variables_of(machine));
 }
 
 double value_of(const Machine& machine, std::string_view name) {
@@ -117,10 +117,7 @@ const std::vector<MeasureInfo>& measures() {
 }
 
 const MeasureInfo& measure_named(std::string_view name) {
-  const auto found =
-      std::find_if(measures().begin(), measures().end(), [&](const MeasureInfo& m) { return m.name == name; });
-  if (found == measures().end()) refuse("measure", name, measures());
-  return *found;
+  return named("measure", name, measures());
 }
 
 }  // namespace tribofit

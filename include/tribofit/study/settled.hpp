@@ -36,6 +36,8 @@ struct Settled {
   double begin = 0;      ///< time at which the last whole cycle begins: a break-away or a largest displacement [s]
   double simulated = 0;  ///< simulated time [s]
   std::string seen;      ///< where not settled: what was seen, in a sentence
+
+  bool repeats() const { return regime == Regime::stick_slip || regime == Regime::vibration; }
 };
 
 /// Where a simulation begins.
