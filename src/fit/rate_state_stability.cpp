@@ -15,7 +15,7 @@ namespace tribofit::fit {
 
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoRate = std::numeric_limits<double>::quiet_NaN();
 
 /// By how much a logarithm is off within its 95 % interval; not finite where that reaches where there is none.
 template <class F>
@@ -79,8 +79,8 @@ void set_stability(const std::vector<double>& p, double freedom, RateStateFit& f
   }
   for (std::size_t i = 0; i < 1 + fit.states; ++i) {
     if (!fit.parameters[i == 0 ? 0 : 2 * i - 1].at_bound) continue;
-    fit.rate_dependence = {kUnknown, kUnknown, freedom};
-    fit.rate_dependence_lower95 = fit.rate_dependence_upper95 = kUnknown;
+    fit.rate_dependence = {kNoRate, kNoRate, freedom};
+    fit.rate_dependence_lower95 = fit.rate_dependence_upper95 = kNoRate;
     return;
   }
   const double quantile = t_quantile_95(freedom);

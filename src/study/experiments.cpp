@@ -12,7 +12,7 @@ namespace tribofit {
 namespace {
 
 bool is_same(double a, double b) {
-  return std::abs(a - b) <= kSameCondition * std::max(std::abs(a), std::abs(b));
+  return std::abs(a - b) <= kSameAsRecord * std::max(std::abs(a), std::abs(b));
 }
 
 /// As a machine is set to it: two digits in rpm.

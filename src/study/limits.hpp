@@ -135,7 +135,7 @@ inline constexpr double kUsualSpeeds[] = {0.25, 0.5, 2, 4};
 inline constexpr double kErrorOfAccelerometer = 0.01;
 
 /// Conditions closer than this to those of the record are the same.
-inline constexpr double kSameCondition = 0.05;
+inline constexpr double kSameAsRecord = 0.05;
 
 /// What a minute of measuring must add to the probability: a preference of people and no statistic, ten points for ten
 /// minutes.

@@ -22,7 +22,7 @@
 namespace tribofit {
 namespace {
 
-const double kNone = std::numeric_limits<double>::quiet_NaN();
+const double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 /// A channel as a function of time since the record's first sample: means over `grid` [s] with straight lines between.
 std::function<double(double)> follow(const std::vector<double>& channel, double step, double grid) {
@@ -110,7 +110,7 @@ class Predictions {
       if (std::isfinite(m.values[k].std_error)) within += std::pow(m.values[k].std_error, 2);
     }
     const auto n = static_cast<double>(y.size());
-    if (n < 4 || 2 * n < static_cast<double>(simulations_.size())) return {kNone, kNone, kNone};
+    if (n < 4 || 2 * n < static_cast<double>(simulations_.size())) return {kNoValue, kNoValue, kNoValue};
     const StraightLine line = fit_line(x, y);
     const bool leans = line.squares > 0;
     double squares = 0;
@@ -144,7 +144,7 @@ double portrait_distance(const std::vector<Estimate>& measured, const Prediction
     if (!std::isfinite(d)) continue;
     squares += d * d, n += 1;
   }
-  return n > 0 ? std::sqrt(squares / n) : kNone;
+  return n > 0 ? std::sqrt(squares / n) : kNoValue;
 }
 
 std::vector<MotionMeasures> simulate_column(const IdentifiedMachine& identified, const Sensors& sensors,
@@ -178,11 +178,11 @@ void add_column(const MotionMeasures& measured, const std::vector<MotionMeasures
     const Estimate& value = measured.values[k];
     const bool known = std::isfinite(value.value), at_break_away = &value != &measured.break_away();
     add(twin.measures[k],
-        known ? predictions.of(k, value, at_break_away) : TwinMeasure::Simulated{kNone, kNone, kNone});
+        known ? predictions.of(k, value, at_break_away) : TwinMeasure::Simulated{kNoValue, kNoValue, kNoValue});
   }
   const double distance = portrait_distance(measured.values, predictions);
-  add(twin.measures.back(), {distance, kNone, distance});
-  twin.rms_difference.push_back(n > 0 && !missing ? std::sqrt(squares / n) : kNone);
+  add(twin.measures.back(), {distance, kNoValue, distance});
+  twin.rms_difference.push_back(n > 0 && !missing ? std::sqrt(squares / n) : kNoValue);
 }
 
 /// Whether the twin of a column moves as the record does.
@@ -255,7 +255,7 @@ Twin compare_machines(const TwinOptions& options, TwinIdentification& all) {
     twin.measures.push_back(
         {info.name, info.unit == "1" && force ? "N" : info.unit, info.si, m.value, m.std_error, {}});
   }
-  twin.measures.push_back({"phase portrait", "std errors", 1, 0, kNone, {}});
+  twin.measures.push_back({"phase portrait", "std errors", 1, 0, kNoValue, {}});
   const auto affordable = static_cast<std::size_t>(kMostSimulatedSamples / static_cast<double>(motion.size()));
   twin.simulations = std::max(kFewestSimulations, std::min(options.simulations, affordable));
   const Sensors sensors = noise_of_record(motion, segmentation, all.trace.fits[0].floor);
