@@ -35,7 +35,8 @@ void refuse_stress_beside_force(const FileRecord& run) {
 
 class Assembler {
  public:
-  Assembler(FileRecord run, const ReadOptions& options) : run_(std::move(run)), options_(options) {}
+  Assembler(FileRecord run, const ReadOptions& options, bool* needs_radius)
+      : run_(std::move(run)), options_(options), needs_radius_(needs_radius) {}
 
   Trace assemble() {
     set_kind();
@@ -126,6 +127,10 @@ class Assembler {
 
   double radius_of(const Step& step, const char* why) const {
     if (step.conditions.radius.known()) return step.conditions.radius.value;
+    if (needs_radius_ != nullptr) {
+      *needs_radius_ = true;
+      return 0.015;
+    }
     std::string advice = "give it with " + setting("radius", "15mm");
     if (run_.recipe_size() > 1)
       advice += fmt::format(", or one for each of the {} steps where it changes", run_.recipe_size());
@@ -219,10 +224,7 @@ class Assembler {
   }
 
   void divide_by_load(const std::string& force) {
-    if (!run_[Channel::load].empty()) {
-      divide_by_measured_load(force);
-      return;
-    }
+    if (!run_[Channel::load].empty()) return divide_by_measured_load(force);
     if (std::ranges::any_of(trace_.steps, [](const Step& s) { return !s.conditions.load.known(); })) {
       trace_.friction_kind = FrictionKind::force;
       trace_.notes.push_back("no normal force is known: friction is a force in N, " + force +
@@ -374,6 +376,7 @@ class Assembler {
 
   FileRecord run_;
   const ReadOptions& options_;
+  bool* needs_radius_;
   Trace& trace_ = run_;
   std::vector<double> turning_;  ///< rotational speed between the parts [rad/s], where it is all that was recorded
 };
@@ -388,8 +391,8 @@ Conditions first_known(const Conditions& first, const Conditions& second) {
   return known;
 }
 
-Trace assemble(FileRecord run, const ReadOptions& options) {
-  return Assembler(std::move(run), options).assemble();
+Trace assemble(FileRecord run, const ReadOptions& options, bool* needs_radius) {
+  return Assembler(std::move(run), options, needs_radius).assemble();
 }
 
 }  // namespace tribofit

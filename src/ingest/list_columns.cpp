@@ -199,28 +199,17 @@ ColumnListing listing_of(RawTable& table, const ReadOptions& options) {
   return listing;
 }
 
-/// Tries the columns that a listing selects; where they make no trace, with some radius too.
+/// Tries the columns that a listing selects.
 void try_selected(RawTable table, const std::string& path, ReadOptions options, TriedColumns& tried) {
   options.columns = tried.listing.selected;
-  Condition& radius = options.conditions.radius;
-  const bool given = radius.known();
+  bool needed = options.conditions.radius.known();
   tried.needs_radius = true;
   try {
-    const FileRecord recording = read_recording(std::move(table), path, options);
-    const auto try_radius = [&] {
-      const Trace trace = assemble(recording, options);
-      const bool stated = trace.conditions.radius.known() || std::ranges::any_of(trace.steps, [](const Step& step) {
-                            return step.conditions.radius.known();
-                          });
-      tried.needs_radius = radius.known() || (!stated && trace.velocity_kind != VelocityKind::relative);
-    };
-    try {
-      try_radius();
-    } catch (const InputError&) {
-      if (given) throw;
-      radius = {0.015, "example"};
-      try_radius();
-    }
+    const Trace trace = assemble(read_recording(std::move(table), path, options), options, &needed);
+    const bool stated = trace.conditions.radius.known() || std::ranges::any_of(trace.steps, [](const Step& step) {
+                          return step.conditions.radius.known();
+                        });
+    tried.needs_radius = needed || (!stated && trace.velocity_kind != VelocityKind::relative);
   } catch (const InputError& error) {
     tried.obstacle = error.problem() + "; " + error.advice();
   }

@@ -85,8 +85,9 @@ void continue_recording(FileRecord& run, FileRecord next, std::size_t number);
 Conditions first_known(const Conditions& first, const Conditions& second);
 
 /// Makes a trace of a recording: friction from mu, force or torque; velocity in m/s; steps with their conditions.
-/// Throws InputError when friction or velocity cannot be made of what there is.
-Trace assemble(FileRecord run, const ReadOptions& options);
+/// Throws InputError when friction or velocity cannot be made of what there is. needs_radius: set where the radius
+/// alone is missing, and some radius then taken.
+Trace assemble(FileRecord run, const ReadOptions& options, bool* needs_radius = nullptr);
 
 // ---- what the rows are (recognise.cpp)
 
