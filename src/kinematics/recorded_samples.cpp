@@ -36,14 +36,13 @@ double percent(std::size_t part, std::size_t whole) {
   return 100 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
-void add_sentence(const std::string& sentence, std::string& message) {
-  message += (message.empty() ? "" : "; ") + sentence;
+std::string counted(std::size_t count, const char* noun, const char* plural = "s") {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : plural);
 }
 
 /// Adds to what a check says: the first finding takes the place of "ok".
 void add_finding(Status status, const std::string& sentence, HealthItem& item) {
-  if (item.status == Status::ok) item.message.clear();
-  add_sentence(sentence, item.message);
+  item.message = item.status == Status::ok ? sentence : item.message + "; " + sentence;
   item.status = std::max(item.status, status);
 }
 
@@ -133,15 +132,15 @@ void RecordedSamples::leave_out(std::vector<double>& channel, const ChannelSampl
   const bool is_velocity = kind == SampleFault::velocity;
   const std::size_t outliers = samples_in(found.outliers), held = samples_in(found.held);
   if (outliers > 0) {
-    sentences_.push_back(fmt::format(
-        "{} jumps away and back {} times within few samples, first to {}{} ({} % "
-        "of the record, left out)",
-        name, found.outliers.size(), general((is_velocity ? 1e3 : 1) * channel[found.outliers.front().begin], 4),
-        is_velocity ? " mm/s" : "", general(percent(outliers, size_), 3)));
+    const double first = (is_velocity ? 1e3 : 1) * channel[found.outliers.front().begin];
+    sentences_.push_back(
+        fmt::format("{} jumps away and back {} within few samples, first to {}{} ({} % of the record, left out)", name,
+                    counted(found.outliers.size(), "time"), general(first, 4), is_velocity ? " mm/s" : "",
+                    general(percent(outliers, size_), 3)));
   }
   if (held > 0) {
-    sentences_.push_back(fmt::format("{} repeats one value in {} stretches ({} % of the record, left out)", name,
-                                     found.held.size(), general(percent(held, size_), 3)));
+    sentences_.push_back(fmt::format("{} repeats one value in {} ({} % of the record, left out)", name,
+                                     counted(found.held.size(), "stretch", "es"), general(percent(held, size_), 3)));
   }
   left_out_ += outliers + held;
   for (const auto* spans : {&found.outliers, &found.held}) {

@@ -44,24 +44,6 @@ inline double standard_deviation(std::span<const double> x) {
   return std::sqrt(squares / static_cast<double>(x.size() - std::min<std::size_t>(x.size(), 1)));
 }
 
-/// Extremes of consecutive chunks of a channel: one pass, after which most questions need to look at few chunks only.
-struct Chunks {
-  static constexpr std::size_t length = 256;
-  std::vector<Extremes> part;
-  Extremes whole;
-};
-
-inline Chunks chunks_of(std::span<const double> channel) {
-  Chunks chunks;
-  for (std::size_t begin = 0; begin < channel.size(); begin += Chunks::length) {
-    chunks.part.push_back(extremes(channel.subspan(begin, std::min(Chunks::length, channel.size() - begin))));
-    const Extremes& e = chunks.part.back();
-    if (begin == 0) chunks.whole = e;
-    chunks.whole = {std::min(chunks.whole.low, e.low), std::max(chunks.whole.high, e.high)};
-  }
-  return chunks;
-}
-
 /// Evenly spaced subset of about `most` values at the most (up to twice as many), so that sorting costs the same for
 /// any length of record.
 std::vector<double> thinned(std::span<const double> values, std::size_t most);
