@@ -1,16 +1,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <sstream>
 
 #include "console.hpp"
-#include "exit_status.hpp"
 #include "machine_options.hpp"
 #include "settings.hpp"
-#include "tribofit/ingest/channels.hpp"
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/text_of_file.hpp"
+#include "tribofit/output/text.hpp"
+#include "tribofit/workbench/session.hpp"
 #include "typed_values.hpp"
 
 using namespace tribofit;
@@ -82,9 +84,12 @@ void read_conditions(const Settings& s, ReadOptions& read) {
       read.step_radii = std::move(radii);
     }
   }
-  read.load_point = load_point_from(s, read.kind);
-  if (s.speed.empty() || is_driven_in_steps(read.kind)) return;
-  if (read.kind == RecordKind::spring_slider) {
+  if (s.speed.empty()) return;
+  if (is_driven_in_steps(read.kind)) {
+    if (!names_load_point_speeds(s))
+      throw UsageError("--speed of a load point is stated by time, 0s:2um/s,60s:10um/s; one speed alone has no steps");
+    read.load_point = phases_from(s.speed, "--speed");
+  } else if (read.kind == RecordKind::spring_slider) {
     read.spring.velocity = {positive_value(s.speed, Quantity::velocity, "--speed"), kTyped};
   } else {
     read.conditions.speed = {speed_from(s.speed, read.conditions.radius), kTyped};
@@ -127,7 +132,136 @@ void refuse_contradictions(const Settings& s, const IdentifyOptions& options) {
   }
 }
 
+using Slot = FrictionModel::Slot;
+
+std::vector<Slot> slots_of(const std::vector<Law>& laws, const std::vector<Effect>& effects) {
+  std::vector<Slot> slots;
+  for (const Law& law : laws) {
+    const FrictionModel model(law, effects);
+    for (const Slot& slot : model.parameters()) {
+      if (std::ranges::find(slots, slot.full_name(), &Slot::full_name) == slots.end()) slots.push_back(slot);
+    }
+  }
+  return slots;
+}
+
+/// What is typed as --start and --bounds: of laws and effects and, where the record is one of velocity steps or the
+/// file may yet show that it is, of these.
+class GivenReader {
+ public:
+  GivenReader(const Settings& settings, IdentifyOptions& options)
+      : settings_(settings),
+        options_(options),
+        slots_(slots_of(options.laws, options.effects)),
+        is_driven_(names_load_point_speeds(settings) || is_driven_in_steps(settings.identify.read.kind)) {}
+
+  void read() {
+    for (const auto& [name, text] :
+         named_texts(settings_.start_values, "--start", "NAME=VALUE, as in alpha=0.05s/mm")) {
+      for (const Target& target : targets_of(name, "--start")) entry(target).start = target.value(text);
+    }
+    for (const auto& [name, text] :
+         named_texts(settings_.bounds, "--bounds", "NAME=FROM..TO, as in alpha=0.01..0.2s/mm")) {
+      for (const Target& target : targets_of(name, "--bounds")) read_bounds(target, text);
+    }
+    if (const std::string why = contradiction_in(options_.fit.given); !why.empty())
+      throw UsageError("--start and --bounds: " + why);
+  }
+
+ private:
+  struct Target {
+    std::string name;
+    std::vector<GivenParameter>& given;
+    const char* example;  ///< of bounds
+    bool is_above_zero;
+    std::function<double(const std::string&)> value;
+  };
+
+  std::vector<Target> targets_of(const std::string& name, const std::string& option) {
+    const bool may_be_driven = !settings_.identify.read.kind || is_driven_;
+    const StateParameter* state = may_be_driven && name != "mu_0" ? find_state_parameter(name) : nullptr;
+    const bool of_laws = std::ranges::any_of(
+        slots_, [&](const Slot& slot) { return slot.parameter.name == name || slot.full_name() == name; });
+    std::vector<Target> out;
+    if (state == nullptr || of_laws) {
+      out.push_back({name, options_.fit.given, "alpha=0.01..0.2s/mm", false,
+                     [slot = slot_named(name, option), option](const std::string& text) {
+                       return slot_value(text, slot, option);
+                     }});
+    }
+    if (state != nullptr && (is_driven_ || !of_laws)) {
+      out.push_back({name, options_.rate_state.given, "D_c=2um..50um", state->quantity != Quantity::dimensionless,
+                     [this, state, option](const std::string& text) { return state_value(text, *state, option); }});
+    }
+    return out;
+  }
+
+  const Slot& slot_named(const std::string& name, const std::string& option) const {
+    const auto found = std::ranges::find(slots_, name, &Slot::full_name);
+    if (found != slots_.end()) return *found;
+    std::vector<std::string> names;
+    for (const Slot& slot : slots_) names.push_back(slot.full_name());
+    throw UsageError(option + ": the laws fitted here have no parameter '" + name + "'; did you mean '" +
+                     nearest_name(name, names) + "'? They have " + listed(names));
+  }
+
+  /// Where friction is in newtons, so is a parameter that has no unit elsewhere.
+  static double slot_value(const std::string& text, const Slot& slot, const std::string& option) {
+    const bool in_newtons = slot.parameter.unit == "1" && unit_of(text) == "N";
+    return as_usage([&] {
+      return parameter_value(in_newtons ? text.substr(0, text.find('N')) : text, slot.parameter,
+                             option + ": " + slot.full_name());
+    });
+  }
+
+  /// Of friction in newtons a and b are forces, and k is a stiffness.
+  double state_value(const std::string& text, const StateParameter& parameter, const std::string& option) {
+    const bool in_newtons = parameter.quantity != Quantity::length && text.find('N') != std::string::npos;
+    options_.rate_state.given_in_newtons = options_.rate_state.given_in_newtons || in_newtons;
+    return parameter.value(text, option, in_newtons);
+  }
+
+  static GivenParameter& entry(const Target& target) {
+    const auto found = std::ranges::find(target.given, target.name, &GivenParameter::name);
+    return found != target.given.end() ? *found : target.given.emplace_back(GivenParameter{target.name, {}, {}});
+  }
+
+  static void read_bounds(const Target& target, const std::string& text) {
+    const auto [low, high] = as_usage([&] { return range_ends(text, "--bounds", target.example); });
+    const GivenParameter::Bounds bounds = {target.value(low), target.value(high)};
+    const bool positive = !target.is_above_zero || bounds.lower > 0;
+    if (bounds.lower > bounds.upper || !positive)
+      throw UsageError("--bounds: '" + text + "' of " + target.name +
+                       (positive ? " runs from high to low" : " begins at zero or below"));
+    entry(target).bounds = bounds;
+  }
+
+  const Settings& settings_;
+  IdentifyOptions& options_;
+  std::vector<Slot> slots_;
+  bool is_driven_;  ///< the record is stated to be one of velocity steps or holds
+};
+
 }  // namespace
+
+double parameter_value(const std::string& text, const Parameter& parameter, const std::string& option) {
+  const Unit unit = find_unit(parameter.unit).value_or(Unit{});
+  return stated_value(text, unit.quantity, option, parameter.unit == "1" ? "" : parameter.unit);
+}
+
+Effect effect_named(const std::string& name) {
+  return as_usage([&] { return make_effect(name); });
+}
+
+std::string list_of_laws() {
+  return enumerated(law_keys(), "or");
+}
+
+void refuse_clashes(const std::vector<Effect>& effects, const std::vector<Law>& laws) {
+  as_usage([&] {
+    for (const Law& law : laws) FrictionModel(law, effects);
+  });
+}
 
 IdentifyOptions options_from(const Settings& s) {
   IdentifyOptions options = s.identify;
@@ -145,9 +279,8 @@ IdentifyOptions options_from(const Settings& s) {
     }
   }
   refuse_clashes(options.effects, options.laws);
-  options.fit.given = given_from(s, options.laws, options.effects);
+  GivenReader(s, options).read();
   options.rate_state.states = static_cast<std::size_t>(s.states);
-  read_driven(s, options.fit.given, options.rate_state);
   options.published_protocol = s.protocol == "both";
   if (s.protocol == to_string(Protocol::published)) options.fit.protocol = Protocol::published;
   return options;

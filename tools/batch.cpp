@@ -1,21 +1,18 @@
 #include "batch.hpp"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <filesystem>
 #include <map>
-#include <optional>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
 #include "console.hpp"
 #include "memory.hpp"
 #include "results.hpp"
-#include "summary.hpp"
 #include "tribofit/campaign/batch.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/text_of_file.hpp"
@@ -30,16 +27,14 @@ namespace fs = std::filesystem;
 
 /// "3/16"
 Shard shard_from(const std::string& text) {
-  if (text.empty()) return {};
   Shard shard;
-  const char *end = text.data() + text.size(), *slash = text.data() + std::min(text.find('/'), text.size());
-  const auto [first_end, first_error] = std::from_chars(text.data(), slash, shard.index);
-  const auto [last, error] = std::from_chars(std::min(slash + 1, end), end, shard.count);
-  const bool read = first_error == std::errc{} && first_end == slash && error == std::errc{} && last == end;
-  if (!read || shard.index < 1 || shard.index > shard.count) {
-    throw UsageError("--shard: '" + text + "' is not I/N with I from 1 to N, as in 1/4");
-  }
-  return shard;
+  std::istringstream in(text);
+  char slash = 0;
+  if (text.empty()) return shard;
+  const bool is_plain = text.find_first_not_of("0123456789/") == std::string::npos;
+  in >> shard.index >> slash >> shard.count;
+  if (in && in.eof() && is_plain && slash == '/' && shard.index >= 1 && shard.index <= shard.count) return shard;
+  throw UsageError("--shard: '" + text + "' is not I/N with I from 1 to N, as in 1/4");
 }
 
 std::string default_results(const std::string& folder) {
@@ -50,49 +45,36 @@ std::string default_results(const std::string& folder) {
   return path.filename().string() + "-results";
 }
 
-/// What identifies a file; nothing where there is none.
-std::optional<std::pair<dev_t, ino_t>> identity_of(const std::string& path) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) return std::nullopt;
-  return std::pair{status.st_dev, status.st_ino};
-}
-
 void refuse_overwriting_inputs(const Settings& s, const Campaign& campaign, const BatchOptions& batch) {
-  std::map<std::pair<dev_t, ino_t>, std::string> inputs;
-  const auto add = [&](const std::string& path) {
-    if (const auto identity = identity_of(path)) inputs.emplace(*identity, path);
+  std::map<fs::path, std::string> inputs;
+  std::error_code ignored;
+  const auto place_of = [&](const std::string& path) { return fs::weakly_canonical(path, ignored); };
+  for (const std::string& companion : batch.companions) inputs.emplace(place_of(companion), companion);
+  for (const Run& run : campaign.runs) inputs.emplace(place_of(run.trace.path), run.trace.path);
+  const auto check = [&](const char* option, const std::string& output) {
+    const auto found = inputs.find(place_of(output));
+    if (found != inputs.end()) throw UsageError(option + std::string(" would overwrite ") + found->second);
   };
-  for (const std::string& companion : batch.companions) add(companion);
-  for (const Run& run : campaign.runs) add(run.trace.path);
-  const auto check = [&](const std::string& output) {
-    const auto identity = identity_of(output);
-    const auto found = identity ? inputs.find(*identity) : inputs.end();
-    if (found != inputs.end()) throw UsageError("--out would overwrite " + found->second);
-  };
-  check((fs::path(batch.results) / "summary.csv").string());
-  if (const auto report = identity_of(s.report); report && inputs.count(*report) > 0) {
-    throw UsageError("--report would overwrite " + inputs.at(*report));
-  }
-  for (const Run& run : campaign.runs) check(result_path(batch.results, run.name));
+  check("--out", (fs::path(batch.results) / "summary.csv").string());
+  if (!s.report.empty()) check("--report", s.report);
+  for (const Run& run : campaign.runs) check("--out", result_path(batch.results, run.name));
 }
 
 void check_usage(const Settings& s, const Campaign& campaign, const BatchOptions& batch) {
-  if (!s.report.empty() && !s.shard.empty()) throw UsageError("--report needs `identify merge`");
-  if (!s.json.empty()) throw UsageError("--json needs one trace at a time; --out has a file for each");
-  if (!s.csv.empty()) throw UsageError("--csv needs one trace at a time");
-  if (campaign.runs.size() > 1 && !s.identify.read.second_file.empty()) {
-    throw UsageError("--with needs one trace at a time");
-  }
-  if (campaign.runs.size() > 1 && !s.identify.read.continued_in.empty()) {
-    throw UsageError("--continue needs one trace at a time");
-  }
-  if (!s.figures.empty() && !s.shard.empty()) throw UsageError("--figures needs `identify merge`");
-  if (!campaign.folder.empty() && same_file(batch.results, campaign.folder)) {
-    throw UsageError("--out is the folder of the traces; name another");
-  }
-  if (!s.shard.empty() && !(s.compare.empty() && s.share.empty() && s.vary.empty())) {
-    throw UsageError("--compare, --share and --vary need `identify merge`");
-  }
+  const auto refuse = [](bool given, const char* why) {
+    if (given) throw UsageError(why);
+  };
+  const bool sharded = !s.shard.empty(), several = campaign.runs.size() > 1;
+  refuse(sharded && !s.report.empty(), "--report needs `identify merge`");
+  refuse(!s.json.empty(), "--json needs one trace at a time; --out has a file for each");
+  refuse(!s.csv.empty(), "--csv needs one trace at a time");
+  refuse(several && !s.identify.read.second_file.empty(), "--with needs one trace at a time");
+  refuse(several && !s.identify.read.continued_in.empty(), "--continue needs one trace at a time");
+  refuse(sharded && !s.figures.empty(), "--figures needs `identify merge`");
+  refuse(!campaign.folder.empty() && same_file(batch.results, campaign.folder),
+         "--out is the folder of the traces; name another");
+  refuse(sharded && !(s.compare.empty() && s.share.empty() && s.vary.empty()),
+         "--compare, --share and --vary need `identify merge`");
   check_comparison(s, batch.results);
   refuse_overwriting(s, {s.compare});
   refuse_overwriting_inputs(s, campaign, batch);
@@ -242,7 +224,7 @@ ExitStatus run_as_batch(const Settings& s, Campaign campaign, const IdentifyOpti
   batch.threads = options.threads;
   check_usage(s, campaign, batch);
   sharing_from(s);  // refused before anything is fitted
-  give_memory_back();
+  set_memory(Memory::given_back);
   BatchOutcome outcome;
   ExitStatus refused = ExitStatus::done;
   try {

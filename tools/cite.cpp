@@ -1,20 +1,16 @@
 #include <fmt/format.h>
 
 #include <fstream>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
-#include "console.hpp"
-#include "exit_status.hpp"
+#include "tribofit/campaign/run_result.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/friction/laws/all.hpp"
 #include "tribofit/friction/state_evolution.hpp"
 #include "tribofit/ingest/conditions.hpp"
-#include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/output/digits.hpp"
+#include "tribofit/output/text.hpp"
 #include "tribofit/version.hpp"
 #include "verbs.hpp"
 
@@ -54,13 +50,16 @@ std::string source_of(const std::string& name) {
                                name, did_you_mean(name, known)));
 }
 
+std::string text_in(const Json& json, const char* name) {
+  return json.at(name).get<std::string>();
+}
+
 /// A value with two digits of its standard error, its interval and its unit.
 std::string value_of(const Json& parameter) {
-  const std::string name = parameter.at("effect").is_null() ? parameter.at("name").get<std::string>()
-                                                            : parameter.at("effect").get<std::string>() + "." +
-                                                                  parameter.at("name").get<std::string>();
+  const std::string effect = parameter.at("effect").is_null() ? "" : text_in(parameter, "effect");
+  const std::string name = full_name(text_in(parameter, "name"), effect);
   const double value = parameter.at("value").get<double>();
-  const std::string unit = parameter.at("unit") == "1" ? "" : " " + parameter.at("unit").get<std::string>();
+  const std::string unit = unit_behind(text_in(parameter, "unit"));
   if (!parameter.at("std_error").is_number()) return fmt::format("{} = {}{} (held)", name, general(value), unit);
   const double error = parameter.at("std_error").get<double>();
   std::string text = fmt::format("{} = ({}){}", name, with_error(value, error), unit);
@@ -75,9 +74,9 @@ std::string conditions_of(const Json& result) {
   const Json& conditions = result.at("conditions");
   std::string text;
   for (const ConditionInfo& info : condition_infos) {
-    const auto at = conditions.find(info.column);
-    if (at == conditions.end() || !at->is_number()) continue;
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", general(at->get<double>(), 4), info.unit);
+    const Json value = conditions.value(info.column, Json());
+    if (!value.is_number()) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", general(value.get<double>(), 4), info.unit);
   }
   return text.empty() ? "" : " (" + text + ")";
 }
@@ -86,22 +85,18 @@ std::string conditions_of(const Json& result) {
 std::string paragraph_of(const Json& result, std::vector<std::string>& names) {
   const Json& fit = result.at("fits").at(result.at("best").get<std::size_t>());
   const Json& trace = result.at("trace");
-  names = {fit.at("law").get<std::string>()};
-  std::string effects;
-  for (const Json& effect : fit.at("effects")) {
-    names.push_back(effect.get<std::string>());
-    effects += (effects.empty() ? " with " : " and ") + names.back();
-  }
+  names = fit.at("effects").get<std::vector<std::string>>();
+  const std::string effects = names.empty() ? "" : fmt::format(" with {}", fmt::join(names, " and "));
+  names.insert(names.begin(), text_in(fit, "law"));
   const std::string cycles = fit.at("cycles").is_number() && fit.at("cycles").get<int>() > 0
                                  ? fmt::format(" over {} cycles", fit.at("cycles").get<int>())
                                  : "";
-  std::string text =
-      fmt::format("  From a {} record of {} samples{} the {} law{} was identified with tribofit {}{}: ",
-                  trace.at("kind").get<std::string>(), trace.at("samples").get<long long>(), conditions_of(result),
-                  names[0], effects, result.at("tool").at("version").get<std::string>(), cycles);
-  std::string values;
-  for (const Json& parameter : fit.at("parameters")) values += (values.empty() ? "" : "; ") + value_of(parameter);
-  text += values + " (value +/- standard error [95 % interval]).";
+  std::string text = fmt::format("  From a {} record of {} samples{} the {} law{} was identified with tribofit {}{}: ",
+                                 text_in(trace, "kind"), trace.at("samples").get<long long>(), conditions_of(result),
+                                 names[0], effects, text_in(result.at("tool"), "version"), cycles);
+  std::vector<std::string> values;
+  for (const Json& parameter : fit.at("parameters")) values.push_back(value_of(parameter));
+  text += fmt::format("{} (value +/- standard error [95 % interval]).", fmt::join(values, "; "));
   const Json& error = fit.at("error").at("held_out_rmse");
   if (error.is_number() && fit.at("floor_rmse").is_number()) {
     text += fmt::format(" The error on what was held out of the fit is {} (RMSE), the noise floor {}.",
@@ -109,10 +104,9 @@ std::string paragraph_of(const Json& result, std::vector<std::string>& names) {
   }
   if (fit.at("conditional").get<bool>())
     text += " The law does not hold to the noise floor: errors and intervals are conditional on it.";
-  const auto diagnosis = result.find("diagnosis");
-  if (diagnosis != result.end() && diagnosis->is_object())
-    text += fmt::format(" Verdict of the diagnosis: {}.", diagnosis->at("verdict").get<std::string>());
-  return text + fmt::format(" Checksum of the record: {}.\n", trace.at("checksum").get<std::string>());
+  const Json diagnosis = result.value("diagnosis", Json());
+  if (diagnosis.is_object()) text += fmt::format(" Verdict of the diagnosis: {}.", text_in(diagnosis, "verdict"));
+  return text + fmt::format(" Checksum of the record: {}.\n", text_in(trace, "checksum"));
 }
 
 std::string paragraph_of_file(const std::string& path, std::vector<std::string>& names) {

@@ -3,16 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <memory>
-#include <string>
-#include <vector>
 
-#include "console.hpp"
-#include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/list_columns.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/output/digits.hpp"
-#include "tribofit/report/terminal.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;
@@ -39,21 +33,16 @@ Row row_of(const ListedColumn& column) {
           column.channel + (column.is_likely ? "?" : "")};
 }
 
-/// Letters, not bytes.
-std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
-}
-
 std::string table_of(const std::vector<Row>& rows) {
   std::array<std::size_t, kColumns> widths{};
   for (const Row& row : rows) {
-    for (std::size_t k = 0; k < kColumns; ++k) widths[k] = std::max(widths[k], width_of(row[k]));
+    for (std::size_t k = 0; k < kColumns; ++k) widths[k] = std::max(widths[k], letters_in(row[k]));
   }
   std::string text;
   for (const Row& row : rows) {
     std::string line = " ";
     for (std::size_t k = 0; k < kColumns; ++k) {
-      const std::string space(widths[k] - width_of(row[k]), ' ');
+      const std::string space(widths[k] - letters_in(row[k]), ' ');
       const bool is_number = k >= 2 && k <= 4;
       line += " " + (is_number ? space + row[k] : row[k] + space) + " ";
     }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "console.hpp"
@@ -48,24 +49,8 @@ std::vector<std::string> words_of(const CLI::Option& option) {
   return tribofit::split(std::string_view(type).substr(begin + 1, end - begin - 1), ',');
 }
 
-void add_typables(const CLI::App& app, const std::vector<std::string>& verb, std::vector<Command::Typable>& out) {
-  Command::Typable own{verb};
-  for (const CLI::Option* option : app.get_options()) {
-    const std::vector<std::string> words = words_of(*option);
-    if (option->get_positional()) own.verbs = words;  // typed as a verb is
-    for (const std::string& name : option->get_lnames()) {
-      own.options.push_back("--" + name);
-      if (!words.empty()) own.words[own.options.back()] = words;
-    }
-  }
-  const auto subcommands = app.get_subcommands([](const CLI::App*) { return true; });
-  for (const CLI::App* sub : subcommands) own.verbs.push_back(sub->get_name());
-  out.push_back(std::move(own));
-  for (const CLI::App* sub : subcommands) {
-    std::vector<std::string> longer = verb;
-    longer.push_back(sub->get_name());
-    add_typables(*sub, longer, out);
-  }
+std::vector<CLI::App*> verbs_of(CLI::App& app) {
+  return app.get_subcommands([](const CLI::App*) { return true; });
 }
 
 /// Where a command of an example may go on in the next line: before an option, else at the last blank.
@@ -149,33 +134,25 @@ Option Option::describe(const char* help) const {
   return *this;
 }
 
-Option Option::show_default() const {
-  parsed_->capture_default_str();
-  return *this;
-}
-
 Option Option::one_of(const std::vector<std::string>& words) const {
   parsed_->check(CLI::IsMember(words));
   return *this;
 }
 
-Option Option::range(double least, double most) const {
+template <class T>
+Option Option::range(T least, T most) const {
   parsed_->check(CLI::Range(least, most));
   return *this;
 }
-
-Option Option::range(int least, int most) const {
-  parsed_->check(CLI::Range(least, most));
-  return *this;
-}
+template Option Option::range(int, int) const;
+template Option Option::range(double, double) const;
 
 Command::Command(CLI::App& app, ExitStatus& status)
     : app_(&app), status_(&status), readers_(std::make_shared<std::vector<std::function<void()>>>()) {}
 
 std::string Command::likely_verb(const std::string& word) const {
   std::vector<std::string> known;
-  for (const CLI::App* sub : app_->get_subcommands([](const CLI::App*) { return true; }))
-    known.push_back(sub->get_name());
+  for (const CLI::App* verb : verbs_of(*app_)) known.push_back(verb->get_name());
   return tribofit::likely_name(word, known);
 }
 
@@ -209,28 +186,20 @@ Option Command::added(CLI::Option* option) const {
   return Option(option);
 }
 
-Option Command::add_option(const std::string& names, std::string& value, const std::string& help) const {
-  return added(app_->add_option(names, value, help));
+template <class T>
+Option Command::add_option(const std::string& names, T& value, const std::string& help) const {
+  CLI::Option* option = app_->add_option(names, value, help);
+  if constexpr (std::is_same_v<T, std::vector<std::string>>) option->allow_extra_args(false);
+  return added(option);
 }
-
-Option Command::add_option(const std::string& names, std::vector<std::string>& values, const std::string& help) const {
-  return added(app_->add_option(names, values, help)->allow_extra_args(false));
-}
+template Option Command::add_option(const std::string&, std::string&, const std::string&) const;
+template Option Command::add_option(const std::string&, std::vector<std::string>&, const std::string&) const;
+template Option Command::add_option(const std::string&, int&, const std::string&) const;
+template Option Command::add_option(const std::string&, std::size_t&, const std::string&) const;
+template Option Command::add_option(const std::string&, double&, const std::string&) const;
 
 Option Command::add_names(const std::string& name, std::vector<std::string>& values, const std::string& help) const {
   return added(app_->add_option(name, values, help));
-}
-
-Option Command::add_option(const std::string& names, int& value, const std::string& help) const {
-  return added(app_->add_option(names, value, help));
-}
-
-Option Command::add_option(const std::string& names, std::size_t& value, const std::string& help) const {
-  return added(app_->add_option(names, value, help));
-}
-
-Option Command::add_option(const std::string& names, double& value, const std::string& help) const {
-  return added(app_->add_option(names, value, help));
 }
 
 Option Command::add_flag(const std::string& names, bool& value, const std::string& help) const {
@@ -241,12 +210,15 @@ Option Command::option(const char* name) const {
   return Option(app_->get_option(name));
 }
 
-Option Command::add_read(const std::string& names, Read read, const std::string& help) const {
-  const auto text = std::make_shared<std::string>();
+Option Command::add_read(const std::string& names, Read read, const std::string& help,
+                         const std::string& otherwise) const {
+  const auto text = std::make_shared<std::string>(otherwise);
   readers_->push_back([text, read = std::move(read)] {
     if (!text->empty()) read(*text);
   });
-  return add_option(names, *text, help);
+  CLI::Option* option = app_->add_option(names, *text, help);
+  if (!otherwise.empty()) option->capture_default_str();
+  return added(option);
 }
 
 Option Command::add_each(const std::string& names, Read read, const std::string& help) const {
@@ -255,12 +227,13 @@ Option Command::add_each(const std::string& names, Read read, const std::string&
   return add_option(names, *texts, help);
 }
 
-Option Command::add_quantity(const std::string& name, tribofit::Quantity quantity, std::function<void(double)> take,
-                             const std::string& help) const {
-  const auto read = [name, quantity, take = std::move(take)](const std::string& text) {
-    take(positive_value(text, quantity, name));
+Option Command::add_number(const std::string& name, const TypedNumber& how, std::function<void(double)> take,
+                           const std::string& help) const {
+  const auto read = [name, how, take = std::move(take)](const std::string& text) {
+    take(how.is_positive ? positive_value(text, how.quantity, name, how.bare_unit)
+                         : stated_value(text, how.quantity, name, how.bare_unit));
   };
-  return add_read(name, read, help);
+  return add_read(name, read, help, how.otherwise);
 }
 
 void Command::on_run(std::function<ExitStatus()> run) const {
@@ -298,10 +271,33 @@ std::vector<Command::Typed> Command::typed() const {
   return out;
 }
 
-std::vector<Command::Typable> Command::typables() const {
-  std::vector<Typable> out;
-  add_typables(*app_, {}, out);
+std::vector<std::string> Command::verbs() const {
+  std::vector<std::string> out = {""};
+  for (CLI::App* verb : verbs_of(*app_)) {
+    for (const std::string& below : Command(*verb, *status_).verbs())
+      out.push_back(verb->get_name() + (below.empty() ? "" : " ") + below);
+  }
   return out;
+}
+
+Command::Offer Command::offer_after(const std::vector<std::string>& before, bool is_option) const {
+  CLI::App* at = app_;
+  for (const std::string& word : before) {
+    for (CLI::App* verb : verbs_of(*at)) at = verb->get_name() == word ? verb : at;
+  }
+  Offer offer;
+  for (const CLI::Option* option : at->get_options()) {
+    const std::vector<std::string> words = words_of(*option);
+    for (const std::string& name : option->get_lnames()) {
+      if (!before.empty() && before.back() == "--" + name && !words.empty()) return {words};
+      if (is_option) offer.words.push_back("--" + name);
+    }
+    if (option->get_positional() && !is_option) offer.words.insert(offer.words.end(), words.begin(), words.end());
+  }
+  if (is_option) return offer;
+  offer.is_open = true;
+  for (const CLI::App* verb : verbs_of(*at)) offer.words.push_back(verb->get_name());
+  return offer;
 }
 
 std::vector<std::string> Command::own_options(const std::function<bool(const Typed&)>& wanted) const {

@@ -2,19 +2,36 @@
 
 #include <cstddef>
 #include <functional>
-#include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "exit_status.hpp"
 #include "tribofit/ingest/units.hpp"
 
 namespace CLI {
 class App;
 class Option;
 }  // namespace CLI
+
+/// How `identify` ends; the help states the same.
+enum class ExitStatus {
+  done = 0,
+  failed = 1,       ///< the data were read but the analysis could not be done, or one of several traces failed
+  wrong_usage = 2,  ///< the command line cannot be meant
+  bad_input = 3,    ///< a file cannot be read or is invalid
+};
+
+/// The worse of two.
+inline ExitStatus worse(ExitStatus a, ExitStatus b) {
+  return a < b ? b : a;
+}
+
+/// The command line cannot be meant: what is wrong, in one sentence.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 /// Sections of the help. They say what an option is for, too: what shapes the analysis is repeated in the commands that
 /// a result names.
@@ -31,15 +48,25 @@ class Option {
 
   Option required() const;
   Option describe(const char* help) const;
-  /// The help states the value it has unless typed.
-  Option show_default() const;
   Option one_of(const std::vector<std::string>& words) const;
-  Option range(double least, double most) const;
-  Option range(int least, int most) const;
+  /// T: int or double.
+  template <class T>
+  Option range(T least, T most) const;
 
  private:
   CLI::Option* parsed_;
 };
+
+/// How a number is typed.
+struct TypedNumber {
+  tribofit::Quantity quantity = tribofit::Quantity::dimensionless;
+  const char* otherwise = "";  ///< what holds unless it is typed, which the help shows; empty: nothing
+  const char* bare_unit = "";  ///< of a number without one; empty: SI
+  bool is_positive = false;    ///< it must be greater than zero
+};
+constexpr TypedNumber positive(tribofit::Quantity quantity, const char* otherwise = "", const char* bare_unit = "") {
+  return {quantity, otherwise, bare_unit, true};
+}
 
 /// A command line of `identify`, or of one of its verbs: options, help, and what it runs.
 ///
@@ -58,14 +85,11 @@ class Command {
   /// The verb has kinds of its own; `advice` is the usage error where none is named.
   void requires_kind(const char* advice) const;
 
-  Option add_option(const std::string& names, std::string& value, const std::string& help) const;
-  /// One value each time it is given; it may be given several times.
-  Option add_option(const std::string& names, std::vector<std::string>& values, const std::string& help) const;
+  /// T: text, a number, or a list of texts, one value each time it is given.
+  template <class T>
+  Option add_option(const std::string& names, T& value, const std::string& help) const;
   /// Names that stand for themselves, as many as there are.
   Option add_names(const std::string& name, std::vector<std::string>& values, const std::string& help) const;
-  Option add_option(const std::string& names, int& value, const std::string& help) const;
-  Option add_option(const std::string& names, std::size_t& value, const std::string& help) const;
-  Option add_option(const std::string& names, double& value, const std::string& help) const;
   /// names: "--trim,!--no-trim" has a negative form.
   Option add_flag(const std::string& names, bool& value, const std::string& help) const;
   Option option(const char* name) const;
@@ -73,12 +97,19 @@ class Command {
   /// What reads a text: it throws UsageError or tribofit::InputError.
   using Read = std::function<void(const std::string&)>;
   /// An option whose text is read when all are parsed, before the verb runs, in the order in which they were added.
-  Option add_read(const std::string& names, Read read, const std::string& help) const;
+  /// otherwise: what is read unless it is typed, which the help shows.
+  Option add_read(const std::string& names, Read read, const std::string& help,
+                  const std::string& otherwise = "") const;
   /// The same of one that may be given several times.
   Option add_each(const std::string& names, Read read, const std::string& help) const;
-  /// A number with a unit, greater than zero, in SI. name: as messages have it.
-  Option add_quantity(const std::string& name, tribofit::Quantity quantity, std::function<void(double)> take,
-                      const std::string& help) const;
+  /// A number with a unit, in SI. name: as messages have it.
+  Option add_number(const std::string& name, const TypedNumber& how, std::function<void(double)> take,
+                    const std::string& help) const;
+  template <class T>
+  Option add_number(const std::string& name, const TypedNumber& how, T& value, const std::string& help) const {
+    return add_number(
+        name, how, [&value](double number) { value = number; }, help);
+  }
   /// One of a few words, each of which stands for a value.
   template <class T>
   Option add_choice(const std::string& name, T& value, const std::vector<std::pair<std::string, T>>& choices,
@@ -107,14 +138,14 @@ class Command {
   };
   std::vector<Typed> typed() const;
 
-  /// What can be typed after a verb.
-  struct Typable {
-    std::vector<std::string> verb;                               ///< {"study", "speed"}; empty: the command itself
-    std::vector<std::string> verbs = {}, options = {};           ///< its own verbs; "--radius", ...
-    std::map<std::string, std::vector<std::string>> words = {};  ///< that an option takes, where they are few
+  /// Of this command the empty text, then each verb and the verbs of each: "study speed".
+  std::vector<std::string> verbs() const;
+  /// What may be typed where these words stand before it: words of an option or verbs; as an option, if that has begun.
+  struct Offer {
+    std::vector<std::string> words;
+    bool is_open = false;  ///< a file may stand there, too
   };
-  /// Of this command, then of each verb and the verbs of each.
-  std::vector<Typable> typables() const;
+  Offer offer_after(const std::vector<std::string>& before, bool is_option) const;
 
   /// The options as typed that shape the analysis, for the next command; where `wanted` is given, those of them.
   std::vector<std::string> own_options(const std::function<bool(const Typed&)>& wanted = {}) const;

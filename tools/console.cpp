@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
@@ -15,6 +14,7 @@
 
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "tribofit/output/digits.hpp"
 
 namespace {
 
@@ -68,9 +68,7 @@ bool wants_unicode() {
   for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {  // the first that is set decides, as in POSIX
     const char* locale = std::getenv(name);
     if (locale == nullptr || *locale == '\0') continue;
-    std::string lower(locale);
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string lower = tribofit::lower_case(locale);
     return lower.find("utf-8") != std::string::npos || lower.find("utf8") != std::string::npos;
   }
   return false;
@@ -104,16 +102,9 @@ void ProgressLine::end() {
 }
 
 std::string time_left(double seconds) {
-  constexpr double kMinute = 60, kHour = 3600;
-  char text[32];
-  if (seconds < 1.5 * kMinute) {
-    std::snprintf(text, sizeof text, "%.0f s left", std::max(1.0, seconds));
-  } else if (seconds < 1.5 * kHour) {
-    std::snprintf(text, sizeof text, "%.0f min left", seconds / kMinute);
-  } else {
-    std::snprintf(text, sizeof text, "%.1f h left", seconds / kHour);
-  }
-  return text;
+  const double minutes = seconds / 60;
+  if (minutes < 1.5) return tribofit::fixed(std::max(1.0, seconds), 0) + " s left";
+  return minutes < 90 ? tribofit::fixed(minutes, 0) + " min left" : tribofit::fixed(minutes / 60, 1) + " h left";
 }
 
 void ProgressLine::show(std::string_view words, double part) {
@@ -138,6 +129,10 @@ void ProgressLine::show(std::string_view words, double part) {
   shown_ = true;
 }
 
+std::size_t letters_in(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
 std::size_t prose_width() {
   constexpr std::size_t kNarrowest = 80, kWidest = 120;
   return std::clamp(terminal_width(), kNarrowest, kWidest);
@@ -150,8 +145,7 @@ std::string folded(const std::string& sentence, std::size_t indent) {
   for (std::size_t at = 0; at < sentence.size();) {
     const std::size_t end = std::min(sentence.find(' ', at), sentence.size());
     const std::string_view word = std::string_view(sentence).substr(at, end - at);
-    const auto length = static_cast<std::size_t>(std::count_if(
-        word.begin(), word.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+    const std::size_t length = letters_in(word);
     if (column > indent && column + 1 + length > width) {
       out += "\n" + std::string(indent, ' ');
       column = indent;

@@ -42,6 +42,9 @@ class ProgressLine {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now(), next_{};
 };
 
+/// Letters of a text in UTF-8.
+std::size_t letters_in(std::string_view text);
+
 /// Columns of prose: those of the terminal, but 80 to 120.
 std::size_t prose_width();
 

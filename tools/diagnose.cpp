@@ -1,17 +1,5 @@
-#include <memory>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include "console.hpp"
-#include "diagnosed_runs.hpp"
-#include "inputs.hpp"
-#include "results.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
-#include "tribofit/pipeline.hpp"
 #include "tribofit/report/csv.hpp"
-#include "tribofit/report/json.hpp"
-#include "tribofit/report/terminal.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;
@@ -69,8 +57,6 @@ void add_diagnose(const Command& app) {
                   "End the search for effects after this time (10s, 2min) and report what is known");
   add_model_options(verb, *settings);
   add_parameter_options(verb, *settings);
-  add_selection_options(verb, *settings);
-  add_output_options(verb, *settings);
-  add_report_option(verb, *settings);
+  add_output_options(verb, *settings, true);
   verb.on_run([settings, verb] { return run_diagnose(*settings, verb.own_options()); });
 }

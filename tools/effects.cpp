@@ -1,11 +1,4 @@
-#include <memory>
-#include <string>
-#include <vector>
-
-#include "console.hpp"
-#include "settings.hpp"
 #include "tribofit/friction/effects/all.hpp"
-#include "tribofit/report/terminal.hpp"
 #include "tribofit/study/fingerprint.hpp"
 #include "verbs.hpp"
 

@@ -6,19 +6,13 @@
 #include <chrono>
 #include <condition_variable>
 #include <csignal>
-#include <memory>
 #include <mutex>
 #include <stdexcept>
-#include <string>
 #include <system_error>
 #include <thread>
 #include <utility>
-#include <vector>
 
-#include "console.hpp"
-#include "inputs.hpp"
 #include "memory.hpp"
-#include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/text_of_file.hpp"
 #include "tribofit/workbench/server.hpp"
 #include "verbs.hpp"
@@ -46,7 +40,6 @@ void add_options(const Command& app, ExploreSettings& s) {
   add_input_options(app, s);
   add_model_options(app, s);
   add_parameter_options(app, s);
-  add_selection_options(app, s);
   const Command server = app.in(section::kServer);
   server.add_option("--session", s.session, "Go on with a session that the page saved (the trace is named in it)");
   server.add_option("--port", s.port, "Port of 127.0.0.1 to listen on (default: a free one)").range(1, 65535);
@@ -62,11 +55,6 @@ ExploreSettings settings_of(std::vector<std::string> words, const std::string& t
   return s;
 }
 
-std::string text_of_session(const std::string& path) {
-  constexpr std::uint64_t kMost = 64 << 20;
-  return tribofit::text_of_file(path, kMost, "give --session a file that the page saved");
-}
-
 /// The words of a command line without these options and their values.
 std::vector<std::string> without(const std::vector<std::string>& options, const std::vector<std::string>& words) {
   std::vector<std::string> out;
@@ -80,34 +68,22 @@ std::vector<std::string> without(const std::vector<std::string>& options, const 
   return out;
 }
 
-/// What the command line says of the fit without the choice, which the page changes.
-std::vector<std::string> without_choice(const std::vector<std::string>& words) {
-  return without({"--law", "--effect", "--formula", "--start", "--bounds", "--cycles", "--exclude"}, words);
-}
-
-/// Formulas as typed; those of files are read now, as no file is read later.
-std::vector<std::string> formulas_of(const Settings& s) {
-  std::vector<std::string> out;
-  for (const std::string& text : s.formulas) {
-    if (text.starts_with('@'))
-      throw UsageError("--formula: type it, or paste it into the page; @FILE is not read here");
-    out.push_back(text);
-  }
-  return out;
-}
-
 WorkbenchOptions options_for(const ExploreSettings& s, const std::vector<std::string>& arguments) {
   WorkbenchOptions options;
+  if (std::ranges::any_of(s.formulas, [](const std::string& text) { return text.starts_with('@'); }))
+    throw UsageError("--formula: type it, or paste it into the page; @FILE is not read here");
   options.identify = options_from(s);
   const Input input = only_input(s, options.identify.read, "explore");
   options.input = input.trace;
   options.notes = input.notes;
   options.warnings = input.warnings;
-  options.arguments = arguments_for(input, without_choice(arguments));
+  const auto others =
+      without({"--law", "--effect", "--formula", "--start", "--bounds", "--cycles", "--exclude"}, arguments);
+  options.arguments = arguments_for(input, others);  // the page changes the choice
   options.instruments_declared = !s.instruments.empty();
   options.begin.law = options.identify.laws.front();
   options.begin.effects = s.effects;
-  options.begin.formulas = formulas_of(s);
+  options.begin.formulas = s.formulas;
   options.begin.given = options.identify.fit.given;
   options.begin.selection = options.identify.selection;
   options.identify.laws = IdentifyOptions().laws;  // all of them climb in a diagnosis
@@ -218,12 +194,13 @@ ExitStatus run_explore(ExploreSettings& s, const std::vector<std::string>& given
   std::vector<std::string> arguments = given;
   std::string saved;
   if (!s.session.empty()) {
-    saved = text_of_session(s.session);
+    constexpr std::uint64_t kMost = 64 << 20;
+    saved = text_of_file(s.session, kMost, "give --session a file that the page saved");
     const SavedWorkbench earlier = saved_workbench(saved, s.session);
     take_over(earlier, s);
     arguments = earlier.arguments;
   }
-  keep_memory();
+  set_memory(Memory::of_two_heaps);
   WorkbenchSession session(options_for(s, arguments));
   if (!saved.empty()) session.load(saved, s.session);
   allow_many_connections();

@@ -1,9 +1,4 @@
-#include <algorithm>
-#include <memory>
-#include <string>
-#include <vector>
 
-#include "console.hpp"
 #include "help_texts.hpp"
 #include "verbs.hpp"
 

@@ -2,20 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "batch.hpp"
-#include "console.hpp"
-#include "inputs.hpp"
 #include "memory.hpp"
-#include "results.hpp"
-#include "tribofit/ingest/input_error.hpp"
-#include "tribofit/pipeline.hpp"
+#include "tribofit/campaign/batch.hpp"
 #include "tribofit/report/csv.hpp"
-#include "tribofit/report/json.hpp"
-#include "tribofit/report/terminal.hpp"
 #include "typed_values.hpp"
 #include "verbs.hpp"
 
@@ -24,22 +15,21 @@ using namespace tribofit;
 namespace {
 
 void check_usage(const Settings& s, const std::vector<Input>& inputs) {
-  if (s.again) throw UsageError("--again needs a folder of runs, or with --out");
-  if (!s.share.empty() || !s.vary.empty()) {
-    throw UsageError("--share and --vary need a folder of runs, or with --out");
-  }
-  if (!s.compare.empty()) throw UsageError("--compare needs a folder of runs, or with --out");
-  if (inputs.size() > 1) {
-    const auto alone = [](bool given, const char* name) {
-      if (given) throw UsageError(std::string(name) + " needs one trace at a time");
-    };
-    alone(!s.json.empty(), "--json");
-    alone(!s.csv.empty(), "--csv");
-    alone(!s.report.empty(), "--report");
-    alone(!s.figures.empty(), "--figures");
-    alone(!s.identify.read.second_file.empty(), "--with");
-    alone(!s.identify.read.continued_in.empty(), "--continue");
-  }
+  const auto in_batch = [](bool given, const std::string& needs) {
+    if (given) throw UsageError(needs + " a folder of runs, or with --out");
+  };
+  in_batch(s.again, "--again needs");
+  in_batch(!s.share.empty() || !s.vary.empty(), "--share and --vary need");
+  in_batch(!s.compare.empty(), "--compare needs");
+  const auto alone = [&](bool given, const std::string& name) {
+    if (given && inputs.size() > 1) throw UsageError(name + " needs one trace at a time");
+  };
+  alone(!s.json.empty(), "--json");
+  alone(!s.csv.empty(), "--csv");
+  alone(!s.report.empty(), "--report");
+  alone(!s.figures.empty(), "--figures");
+  alone(!s.identify.read.second_file.empty(), "--with");
+  alone(!s.identify.read.continued_in.empty(), "--continue");
   std::vector<std::string> files = input_files(s);
   for (const Input& input : inputs) files.push_back(input.trace.path);
   refuse_overwriting(s, files);
@@ -55,12 +45,9 @@ ExitStatus run_one(const Settings& s, const Input& input, const IdentifyOptions&
   deliver(s,
           {[&] { return report_of(result, terminal_options(s, alone)); }, [&] { return to_json(result, {arguments}); },
            [&](const std::string& folder) { write_csv_folder(folder, result); }});
-  const bool fitted = std::any_of(result.fits.begin(), result.fits.end(),
-                                  [](const Fit& f) { return f.converged && !f.parameters.empty(); });
-  const bool driven = result.rate_state && result.rate_state->fitted();
-  if ((result.analysed && (fitted || driven)) || result.force_statistics) return ExitStatus::done;
-  std::string reason = result.warnings.empty() ? "no fit converged" : result.warnings.back();
-  print_error(input.trace.path + ": the analysis could not be done: " + reason);
+  const std::string failure = result.force_statistics ? "" : failure_of(result);
+  if (failure.empty()) return ExitStatus::done;
+  print_error(input.trace.path + ": the analysis could not be done: " + failure);
   return ExitStatus::failed;
 }
 
@@ -95,7 +82,6 @@ void add_batch_options(const Command& app, Settings& s) {
 void add_fit_options(const Command& app, Settings& s) {
   add_model_options(app, s);
   add_parameter_options(app, s);
-  add_selection_options(app, s);
   const Command in = app.in(section::kFit);
   in.add_option("--protocol", s.protocol, "joint, published (per-cycle extremes), or both (default)")
       .one_of({"both", "joint", "published"});
@@ -128,7 +114,7 @@ ExitStatus run_identify(const Settings& s, const std::vector<std::string>& argum
   }
   if (inputs.size() == 1 && !inputs.front().problem.empty()) throw InputError(inputs.front().problem, "");
   check_usage(s, inputs);
-  share_memory();
+  set_memory(Memory::of_one_heap);
   return run_all(s, inputs, options, arguments);
 }
 
@@ -140,8 +126,7 @@ void add_identify(const Command& app) {
   add_spring_options(app, *settings);
   add_driven_options(app, *settings);
   add_fit_options(app, *settings);
-  add_output_options(app, *settings);
-  add_report_option(app, *settings);
+  add_output_options(app, *settings, true);
   add_batch_options(app, *settings);
   add_pooling_options(app, *settings);
   app.before_verb([settings, app](const std::string& verb) {

@@ -1,18 +1,15 @@
 #include "machine_options.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <map>
-#include <optional>
 
-#include "exit_status.hpp"
 #include "settings.hpp"
 #include "tribofit/friction/formula.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/nearest_name.hpp"
 #include "tribofit/ingest/spelling.hpp"
-#include "tribofit/ingest/units.hpp"
 #include "tribofit/oscillator/presets.hpp"
+#include "tribofit/output/text.hpp"
 #include "typed_values.hpp"
 
 namespace tribofit {
@@ -24,6 +21,12 @@ struct RequestedEffect {
   std::vector<double> values;
 };
 
+RequestedEffect with_starts(Effect effect) {
+  std::vector<double> values;
+  for (const Parameter& parameter : describe(effect).parameters) values.push_back(parameter.start * parameter.si);
+  return {std::move(effect), std::move(values)};
+}
+
 /// Reads "KEY" or "KEY:name=value,name=value", where a form of the effect may stand first
 /// (rate-state:healing,D_c=50um); a bare number is in the unit of the catalogue, what is not named keeps its start.
 RequestedEffect read_effect(const std::string& text) {
@@ -33,13 +36,10 @@ RequestedEffect read_effect(const std::string& text) {
       !describe(effect_named(text.substr(0, colon))).forms.empty()) {
     colon = first_end;
   }
-  RequestedEffect requested{effect_named(text.substr(0, colon)), {}};
+  RequestedEffect requested = with_starts(effect_named(text.substr(0, colon)));
   const EffectInfo info = describe(requested.effect);
   std::vector<std::string> names;
-  for (const Parameter& parameter : info.parameters) {
-    names.push_back(parameter.name);
-    requested.values.push_back(parameter.start * parameter.si);
-  }
+  for (const Parameter& parameter : info.parameters) names.push_back(parameter.name);
   if (colon >= text.size()) return requested;
   const std::string form = info.spelled() + (info.option.empty() ? ":" : ",") + names.front() + "=VALUE";
   for (const auto& [name, value] : named_texts({text.substr(colon + 1)}, "--effect " + text, "written as " + form)) {
@@ -54,28 +54,6 @@ RequestedEffect read_effect(const std::string& text) {
   return requested;
 }
 
-/// Effects with their values by key: the model puts them into its own order.
-struct RequestedEffects {
-  std::vector<Effect> effects;
-  std::map<std::string, std::vector<double>> values;
-};
-
-RequestedEffects requested_effects(const MachineRequest& request, const Law& law) {
-  RequestedEffects out;
-  const auto add = [&](RequestedEffect requested) {
-    out.values[describe(requested.effect).key] = std::move(requested.values);
-    out.effects.push_back(std::move(requested.effect));
-  };
-  for (const std::string& text : request.effects) add(read_effect(text));
-  for (const std::string& text : request.formulas) {
-    RequestedEffect formula{Effect(Formula(text)), {}};
-    for (const Parameter& p : describe(formula.effect).parameters) formula.values.push_back(p.start * p.si);
-    add(std::move(formula));
-  }
-  refuse_clashes(out.effects, {law});
-  return out;
-}
-
 /// "mu_s" is typed as --mu-s.
 std::string flag_of(const std::string& parameter) {
   std::string flag = "--" + parameter;
@@ -85,11 +63,8 @@ std::string flag_of(const std::string& parameter) {
 
 void set_law_parameters(const MachineRequest& request, const Law& law, std::vector<double>& p) {
   const std::vector<Parameter> parameters = describe(law).parameters;
-  for (const auto& [name, text] : request.law_parameters) {
-    if (text.empty()) continue;
-    const auto found =
-        std::find_if(parameters.begin(), parameters.end(),
-                     [&, &wanted = name](const Parameter& parameter) { return parameter.name == wanted; });
+  for (const auto& [name, value] : request.law_parameters) {
+    const auto found = std::ranges::find(parameters, name, &Parameter::name);
     if (found == parameters.end()) {
       std::vector<std::string> flags;
       for (const Parameter& known : parameters) flags.push_back(flag_of(known.name));
@@ -97,24 +72,21 @@ void set_law_parameters(const MachineRequest& request, const Law& law, std::vect
                            ", which was given as " + flag_of(name),
                        "it takes " + listed(flags));
     }
-    p[static_cast<std::size_t>(found - parameters.begin())] = parameter_value(text, *found, flag_of(name));
+    p[static_cast<std::size_t>(found - parameters.begin())] = value;
   }
 }
 
 void set_rig(const MachineRequest& request, Rig& rig) {
-  if (!request.damping.empty() && !request.damping_ratio.empty()) {
+  if (request.damping && request.damping_ratio)
     throw UsageError("--damping and --damping-ratio exclude each other; give one of them");
-  }
-  const double ratio = rig.damping_ratio();
-  const bool other_block = !request.mass.empty() || !request.stiffness.empty();
-  rig.mass = given_or(request.mass, Quantity::mass, "--mass", "kg", rig.mass);
-  rig.stiffness = given_or(request.stiffness, Quantity::stiffness, "--stiffness", "N/mm", rig.stiffness);
-  if (!request.damping.empty()) {
-    rig.damping = stated_value(request.damping, Quantity::damping, "--damping", "N s/mm");
-  } else if (other_block || !request.damping_ratio.empty()) {
-    rig =
-        rig_with_damping_ratio(rig.mass, rig.stiffness,
-                               given_or(request.damping_ratio, Quantity::dimensionless, "--damping-ratio", "", ratio));
+  const double ratio = request.damping_ratio.value_or(rig.damping_ratio());
+  const bool other_block = request.mass || request.stiffness;
+  rig.mass = request.mass.value_or(rig.mass);
+  rig.stiffness = request.stiffness.value_or(rig.stiffness);
+  if (request.damping) {
+    rig.damping = *request.damping;
+  } else if (other_block || request.damping_ratio) {
+    rig = rig_with_damping_ratio(rig.mass, rig.stiffness, ratio);
   }
 }
 
@@ -134,29 +106,30 @@ double disc_speed_from(const std::string& text, double radius, const std::string
 }
 
 RequestedMachine machine_from(const MachineRequest& request) {
-  const Law law = request.law.empty() ? law_catalogue().front() : law_named(request.law);
-  const double radius = positive_value(request.radius, Quantity::length, "--radius", "mm");
-  const PublishedTest test = published_test(radius, law);
-  RequestedMachine out;
-  out.preset_radius = test.radius;
-  Machine& machine = out.machine;
-  machine.radius = radius;
-  machine.load = given_or(request.load, Quantity::force, "--load", "N", test.load);
-  machine.speed = request.speed.empty() ? test.speed : disc_speed_from(request.speed, radius, "--speed");
-  if (machine.speed == 0) {
+  const PublishedTest test = published_test(request.radius, request.law);
+  Machine machine;
+  machine.radius = request.radius;
+  machine.load = request.load.value_or(test.load);
+  machine.speed = request.speed.empty() ? test.speed : disc_speed_from(request.speed, machine.radius, "--speed");
+  if (machine.speed == 0)
     throw InputError("--speed: '" + request.speed + "' is zero: the disc stands still", "give it as e.g. 4rpm");
-  }
   machine.rig = test.rig;
   set_rig(request, machine.rig);
-  const RequestedEffects requested = requested_effects(request, law);
-  machine.model = FrictionModel(law, requested.effects);
+  std::vector<Effect> effects;
+  std::map<std::string, std::vector<double>> values;  // by key: the model puts effects into its own order
+  const auto add = [&](const RequestedEffect& requested) {
+    values[describe(requested.effect).key] = requested.values;
+    effects.push_back(requested.effect);
+  };
+  for (const std::string& text : request.effects) add(read_effect(text));
+  for (const std::string& text : request.formulas) add(with_starts(Effect(Formula(text))));
+  refuse_clashes(effects, {request.law});
+  machine.model = FrictionModel(request.law, effects);
   machine.parameters = test.friction;
-  set_law_parameters(request, law, machine.parameters);
-  for (const std::string& key : machine.model.effect_keys()) {
-    const std::vector<double>& values = requested.values.at(key);
-    machine.parameters.insert(machine.parameters.end(), values.begin(), values.end());
-  }
-  return out;
+  set_law_parameters(request, request.law, machine.parameters);
+  for (const std::string& key : machine.model.effect_keys())
+    machine.parameters.insert(machine.parameters.end(), values[key].begin(), values[key].end());
+  return {std::move(machine), test.radius};
 }
 
 Machine with_typed(Machine machine, const MachineRequest& request) {
@@ -182,9 +155,10 @@ void add_law_parameters(const Command& group, MachineRequest& r) {
   }
   for (const Parameter& p : parameters) {
     const std::string unit = p.unit == "1" ? "" : " [" + p.unit + "]";
-    std::string help = p.description + unit + " (" + laws[p.name] + ")";
-    help[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(help[0])));
-    group.add_option(flag_of(p.name), r.law_parameters[p.name], help);
+    const auto read = [&r, p](const std::string& text) {
+      r.law_parameters[p.name] = parameter_value(text, p, flag_of(p.name));
+    };
+    group.add_read(flag_of(p.name), read, capitalised(p.description + unit + " (" + laws[p.name] + ")"));
   }
 }
 
@@ -192,20 +166,26 @@ void add_law_parameters(const Command& group, MachineRequest& r) {
 
 void add_machine_options(const Command& verb, MachineRequest& r) {
   const Command rig = verb.in(kRigGroup);
-  rig.add_option("--radius", r.radius, "Friction radius").show_default();
+  rig.add_number("--radius", positive(Quantity::length, "15mm", "mm"), r.radius, "Friction radius");
   rig.add_option("--speed", r.speed, "Speed of the disc, e.g. 4rpm, or under the block, e.g. 6mm/s");
-  rig.add_option("--load", r.load, "Normal force, e.g. 50N");
+  rig.add_number("--load", {Quantity::force, "", "N"}, r.load, "Normal force, e.g. 50N");
   add_machine_numbers(verb, r);
 }
 
 void add_machine_numbers(const Command& verb, MachineRequest& r) {
   const Command rig = verb.in(kRigGroup);
-  rig.add_option("--mass", r.mass, "Moving mass, e.g. 0.85kg");
-  rig.add_option("--stiffness", r.stiffness, "Stiffness of the spring, e.g. 16.2N/mm");
-  rig.add_option("--damping", r.damping, "Damping of the block on its spring, e.g. 0.0047Ns/mm");
-  rig.add_option("--damping-ratio", r.damping_ratio, "Damping as c/(2 sqrt(k m)), e.g. 0.02");
+  rig.add_number("--mass", {Quantity::mass, "", "kg"}, r.mass, "Moving mass, e.g. 0.85kg");
+  rig.add_number("--stiffness", {Quantity::stiffness, "", "N/mm"}, r.stiffness,
+                 "Stiffness of the spring, e.g. 16.2N/mm");
+  rig.add_number("--damping", {Quantity::damping, "", "N s/mm"}, r.damping,
+                 "Damping of the block on its spring, e.g. 0.0047Ns/mm");
+  rig.add_number("--damping-ratio", {}, r.damping_ratio, "Damping as c/(2 sqrt(k m)), e.g. 0.02");
   const Command law = verb.in("Friction (default: the published values at the nearest radius)");
-  law.add_option("--law", r.law, "Law of friction: " + list_of_laws() + " (default the first)");
+  const auto read_law = [&r](const std::string& name) {
+    r.law = as_usage([&] { return make_law(name); });
+    r.law_is_typed = true;
+  };
+  law.add_read("--law", read_law, "Law of friction: " + list_of_laws() + " (default the first)");
   add_law_parameters(law, r);
   law.add_option("--effect", r.effects,
                  "KEY:name=value,... or KEY:FORM,name=value,... (repeatable; `identify effects` lists them)");

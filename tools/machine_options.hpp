@@ -1,17 +1,22 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "command.hpp"
+#include "tribofit/friction/laws/all.hpp"
 #include "tribofit/oscillator/machine.hpp"
 
-/// A machine as typed; empty means: from the published test of the nearest radius.
+/// A machine as typed, in SI; what is not typed comes from the published test of the nearest radius.
 struct MachineRequest {
-  std::string radius = "15mm", speed, load, law;      // law: the first of the list
-  std::map<std::string, std::string> law_parameters;  // by name
-  std::string mass, stiffness, damping, damping_ratio;
+  double radius = 0.015;
+  std::string speed;  ///< of the disc, or at the radius
+  std::optional<double> load, mass, stiffness, damping, damping_ratio;
+  tribofit::Law law = tribofit::law_catalogue().front();
+  bool law_is_typed = false;
+  std::map<std::string, double> law_parameters;  ///< by name
   std::vector<std::string> effects, formulas;
 };
 

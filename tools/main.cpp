@@ -1,16 +1,8 @@
 #include <csignal>
 #include <exception>
 #include <new>
-#include <string>
-#include <string_view>
 
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
-
-#include "command.hpp"
-#include "console.hpp"
-#include "tribofit/ingest/input_error.hpp"
+#include "memory.hpp"
 #include "tribofit/output/whole_file.hpp"
 #include "tribofit/version.hpp"
 #include "verbs.hpp"
@@ -36,16 +28,6 @@ constexpr const char* kProgramFooter =
     "  identify --radius 15mm --columns time=t,mu=COF,v_b=Velocity:mm/s trace.csv\n\n"
     "Exit status: 0 done; 1 data read but no analysis possible, or one of several traces failed;\n"
     "2 wrong usage; 3 unreadable or invalid input.";
-
-/// Channels come and go by tens of megabytes. What is given back to the system is cleared by it before it comes again,
-/// which takes a tenth of the time of a fit.
-void keep_memory() {
-#ifdef __GLIBC__
-  constexpr int kMostKept = 1 << 30, kLargest = 32 << 20;  // glibc takes no more for the second
-  mallopt(M_TRIM_THRESHOLD, kMostKept);
-  mallopt(M_MMAP_THRESHOLD, kLargest);
-#endif
-}
 
 ExitStatus run(int argc, char** argv) {
   const Program program{"identify", kDescription, kProgramFooter, "identify " + std::string(tribofit::version)};
@@ -96,7 +78,7 @@ void leave(int signal) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  keep_memory();
+  set_memory(Memory::kept);
   std::signal(SIGPIPE, SIG_IGN);  // `identify ... | head` is no accident
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     if (std::signal(signal, leave) == SIG_IGN) std::signal(signal, SIG_IGN);  // as under nohup

@@ -1,16 +1,12 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <memory>
 #include <optional>
-#include <string>
 #include <system_error>
 
-#include "console.hpp"
 #include "tribofit/campaign/names.hpp"
 #include "tribofit/ingest/manifest.hpp"
 #include "tribofit/output/whole_file.hpp"
-#include "tribofit/report/terminal.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;

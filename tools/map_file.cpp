@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <filesystem>
 
@@ -32,64 +33,52 @@ std::string head_of(const MapRequest& request) {
   return text;
 }
 
-std::string read_all(const std::string& path) {
-  if (!std::filesystem::exists(path)) return {};
-  constexpr std::uint64_t kMost = std::uint64_t{1} << 30;
-  return text_of_file(path, kMost, "name another folder");
+[[noreturn]] void refuse_writing(const std::string& path, const std::string& advice) {
+  throw InputError(std::string("cannot be written: ") + std::strerror(errno), advice, {path, 0, ""});
 }
 
 }  // namespace
 
-MapFile::MapFile(const std::string& folder, const MapRequest& request, bool again) : request_(request) {
-  done_.assign(request.y.values.size(), false);
-  rows_.resize(request.y.values.size());
+MapFile::MapFile(const std::string& folder, const MapRequest& request, bool again)
+    : request_(request), done_(request.y.values.size(), false), rows_(request.y.values.size()) {
   if (folder.empty()) return;
+  const auto refuse = [](const std::string& problem, const std::string& advice, const std::string& path) {
+    throw InputError(problem, advice, {path, 0, ""});
+  };
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error)
-    throw InputError("the folder cannot be made: " + error.message(), "name a folder you may write to",
-                     {folder, 0, ""});
+  if (error) refuse("the folder cannot be made: " + error.message(), "name a folder you may write to", folder);
   rows_path_ = folder + "/map.rows";
   map_path_ = folder + "/map.csv";
-  if (std::filesystem::is_directory(map_path_)) {
-    throw InputError("is a folder, but the table would be written there", "name another folder", {map_path_, 0, ""});
-  }
-  if (!again && std::filesystem::exists(map_path_)) {
-    throw InputError("a map exists here already", "name another folder, or replace it with --again",
-                     {map_path_, 0, ""});
-  }
-  head_ = head_of(request);
-  if (!again) read_known();
-  std::string text = head_ + "\n";
-  for (std::size_t row = 0; row < rows_.size(); ++row) {
-    if (done_[row]) text += fmt::format("row {}\n", row) + map_csv_row(request_, row, rows_[row]);
-  }
+  if (std::filesystem::is_directory(map_path_))
+    refuse("is a folder, but the table would be written there", "name another folder", map_path_);
+  if (!again && std::filesystem::exists(map_path_))
+    refuse("a map exists here already", "name another folder, or replace it with --again", map_path_);
+  const std::string head = head_of(request) + "\n";
+  if (!again && std::filesystem::exists(rows_path_)) read_known(head);
+  std::string text = head;
+  for (std::size_t row = 0; row < rows_.size(); ++row) text += done_[row] ? text_of(row) : "";
   write_whole(rows_path_, text);  // without a row that was cut off
   out_.open(rows_path_, std::ios::binary | std::ios::app);
-  if (!out_)
-    throw InputError(std::string("cannot be written: ") + std::strerror(errno), "name a folder you may write to",
-                     {rows_path_, 0, ""});
+  if (!out_) refuse_writing(rows_path_, "name a folder you may write to");
 }
 
 /// Rows of map.rows that are whole and of this map.
-void MapFile::read_known() {
-  const std::string text = read_all(rows_path_);
-  if (text.compare(0, head_.size() + 1, head_ + "\n") != 0) return;
-  std::size_t at = head_.size() + 1;
-  while (text.compare(at, 4, "row ") == 0) {
+void MapFile::read_known(const std::string& head) {
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 30;
+  const std::string text = text_of_file(rows_path_, kMost, "name another folder");
+  if (!text.starts_with(head)) return;
+  for (std::size_t at = head.size(); text.compare(at, 4, "row ") == 0;) {
     const std::size_t end = text.find('\n', at);
     if (end == std::string::npos) return;
-    const std::string number = text.substr(at + 4, end - at - 4);
-    if (number.empty() || number.size() > 6 || number.find_first_not_of("0123456789") != std::string::npos) return;
-    const std::size_t row = std::stoul(number);
-    const std::size_t next = std::min(text.find("row ", end), text.size());
-    if (row >= rows_.size()) return;
-    std::vector<MapCell> cells = map_row_from_csv(request_, row, text.substr(end + 1, next - end - 1));
-    if (!cells.empty()) {
-      rows_[row] = std::move(cells);
-      done_[row] = true;
-    }
-    at = next;
+    std::size_t row = 0;
+    const auto [last, error] = std::from_chars(text.data() + at + 4, text.data() + end, row);
+    if (error != std::errc{} || last != text.data() + end || row >= rows_.size()) return;
+    at = std::min(text.find("row ", end), text.size());
+    std::vector<MapCell> cells = map_row_from_csv(request_, row, text.substr(end + 1, at - end - 1));
+    if (cells.empty()) continue;
+    rows_[row] = std::move(cells);
+    done_[row] = true;
   }
 }
 
@@ -97,17 +86,16 @@ std::size_t MapFile::known_count() const {
   return static_cast<std::size_t>(std::count(done_.begin(), done_.end(), true));
 }
 
-void MapFile::write(const std::string& text) {
-  out_ << text << std::flush;
-  if (!out_)
-    throw InputError(std::string("cannot be written: ") + std::strerror(errno),
-                     "free some space and start again: the rows written so far are kept", {rows_path_, 0, ""});
+std::string MapFile::text_of(std::size_t row) const {
+  return fmt::format("row {}\n", row) + map_csv_row(request_, row, rows_[row]);
 }
 
 void MapFile::add(std::size_t row, const std::vector<MapCell>& cells) {
   rows_[row] = cells;
   done_[row] = true;
-  if (out_.is_open()) write(fmt::format("row {}\n", row) + map_csv_row(request_, row, cells));
+  if (!out_.is_open()) return;
+  out_ << text_of(row) << std::flush;
+  if (!out_) refuse_writing(rows_path_, "free some space and start again: the rows written so far are kept");
 }
 
 void MapFile::finish() {

@@ -25,11 +25,12 @@ class MapFile {
   const std::vector<std::vector<tribofit::MapCell>>& rows() const { return rows_; }
 
  private:
-  void read_known();
-  void write(const std::string& text);
+  void read_known(const std::string& head);
+  /// As map.rows has it.
+  std::string text_of(std::size_t row) const;
 
   const tribofit::MapRequest& request_;
-  std::string rows_path_, map_path_, head_;
+  std::string rows_path_, map_path_;
   std::ofstream out_;
   std::vector<bool> done_;
   std::vector<std::vector<tribofit::MapCell>> rows_;

@@ -1,18 +1,8 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "batch.hpp"
-#include "console.hpp"
-#include "results.hpp"
-#include "summary.hpp"
 #include "tribofit/campaign/run_result.hpp"
-#include "tribofit/ingest/input_error.hpp"
 #include "tribofit/report/campaign.hpp"
-#include "tribofit/report/terminal.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;
@@ -39,18 +29,18 @@ ExitStatus merge(const Settings& s, const std::string& folder, const ReportOptio
     return ExitStatus::failed;
   }
   const CampaignSummary& summary = all.summary;
-  for (const std::string& problem : results.problems()) print_error(problem);
+  for (const std::string& problem : results.plan().problems) print_error(problem);
   for (const std::string& error : summary.errors) print_error(error);
   if (!s.quiet) {
     print(all.table);
     print(fmt::format("{} fitted, {} failed, {} missing; summary in {}summary.csv\n", summary.fitted, summary.failed,
                       summary.missing, as_folder(folder)));
-    print(summary.missing > 0 && !results.traces().empty()
+    print(summary.missing > 0 && !results.plan().folder.empty()
               ? fmt::format("\nNext, to do what is missing, with the same options:\n  identify {} --out {}\n",
-                            shell_quoted(as_folder(results.traces())), shell_quoted(as_folder(folder)))
+                            shell_quoted(as_folder(results.plan().folder)), shell_quoted(as_folder(folder)))
               : "\nNext, to see the options for one trace:\n  identify --help\n");
   }
-  const bool whole = summary.failed == 0 && summary.missing == 0 && results.problems().empty();
+  const bool whole = summary.failed == 0 && summary.missing == 0 && results.plan().problems.empty();
   return worse(whole ? ExitStatus::done : ExitStatus::failed, print_refusals(all));
 }
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 
 #include "settings.hpp"
 #include "tribofit/fit/rate_state.hpp"
@@ -44,6 +43,51 @@ void add_pairs(const std::string& text, const std::string& option, std::map<std:
   }
 }
 
+/// What is typed as --cycles, and as one --exclude.
+Selection::Cycles cycles_from(const std::string& text) {
+  const auto [first, last] = as_usage([&] { return range_ends(text, "--cycles", "3..40"); });
+  const auto number = [&](std::string_view spelled) {
+    constexpr std::size_t kMostDigits = 9;
+    const std::string end(trimmed(spelled));
+    if (end.empty() || end.size() > kMostDigits || end.find_first_not_of("0123456789") != std::string::npos)
+      throw UsageError("--cycles: '" + text + "' is not FIRST..LAST, two numbers of cycles as in cycles.csv (from 0)");
+    return static_cast<std::size_t>(std::stoul(end));
+  };
+  const Selection::Cycles cycles = {number(first), number(last)};
+  if (cycles.first > cycles.last) number("");
+  return cycles;
+}
+
+Selection::Stretch stretch_from(const std::string& text) {
+  const auto stretch = as_usage([&] {
+    const auto [from, to] = range_ends(text, "--exclude", "2.5s..3.1s");
+    return Selection::Stretch{stated_value(from, Quantity::time, "--exclude", "s"),
+                              stated_value(to, Quantity::time, "--exclude", "s")};
+  });
+  if (stretch.from < stretch.to) return stretch;
+  throw UsageError("--exclude: '" + text + "' does not run from an earlier to a later time");
+}
+
+void add_condition(const Command& in, const char* name, Quantity quantity, Condition& condition, const char* help) {
+  in.add_number(
+      name, positive(quantity),
+      [&condition](double value) {
+        condition = {value, kTyped};
+      },
+      help);
+}
+
+/// One of several values that are typed one at a time in place of the `list` that holds unless any is; each once.
+template <class T, class Make>
+Command::Read in_place_of(std::vector<T>& list, Make make) {
+  return [&list, make, is_first = true](const std::string& name) mutable {
+    if (is_first) list.clear();
+    is_first = false;
+    const T value = make(name);
+    if (std::ranges::find(list, value) == list.end()) list.push_back(value);
+  };
+}
+
 }  // namespace
 
 void add_input_options(const Command& app, Settings& s) {
@@ -59,21 +103,15 @@ void add_input_options(const Command& app, Settings& s) {
       "--speed", s.speed,
       "Disc speed, 4rpm, or at --radius, 1.1mm/s (else from the file or the stick plateau); of a load point "
       "by time, 0s:2um/s,60s:10um/s");
-  conditions.add_quantity(
-      "--load", Quantity::force,
-      [&](double load) {
-        read.conditions.load = {load, kTyped};
-      },
-      "Normal force, 50N");
+  add_condition(conditions, "--load", Quantity::force, read.conditions.load, "Normal force, 50N");
   conditions.add_option("--instruments", s.instruments, "Known values of the instruments (JSON), with uncertainties");
 
   const Command reading = app.in(section::kReading);
   pairs(reading, "--columns", read.columns,
         "Which column is what: time=t,mu=COF,v_b=Velocity:mm/s (see `identify columns`)");
   pairs(reading, "--units", read.units, "Units or sensitivities, of a channel or a column by its name: v_b=mm/s");
-  reading.add_quantity(
-      "--rate", Quantity::frequency, [&](double rate) { read.rate = rate; },
-      "Samples per second where there is no time column, 20kHz");
+  reading.add_number("--rate", positive(Quantity::frequency), read.rate,
+                     "Samples per second where there is no time column, 20kHz");
   reading.add_option("--with", read.second_file, "Second file of the same run, from the other instrument");
   pairs(reading, "--with-columns", read.second_columns, "--columns of the second file: v_b=Velocity:mm/s");
   pairs(reading, "--with-units", read.second_units, "--units of the second file");
@@ -85,9 +123,8 @@ void add_input_options(const Command& app, Settings& s) {
           "slide-hold-slide (identify help kinds)")
       .one_of(record_kind_names());
   reading.add_flag("--never-sticks", s.never_sticks, "The same as --kind sliding");
-  reading.add_quantity(
-      "--stick-below", Quantity::velocity, [&](double speed) { s.identify.motion.stick.below = speed; },
-      "Relative speed below which the block sticks, 0.5mm/s (else from the noise)");
+  reading.add_number("--stick-below", positive(Quantity::velocity), s.identify.motion.stick.below,
+                     "Relative speed below which the block sticks, 0.5mm/s (else from the noise)");
   reading.add_flag("--trim,!--no-trim", s.identify.motion.trim,
                    "Exclude the run-up of the disc (default); --no-trim keeps it");
 }
@@ -95,20 +132,12 @@ void add_input_options(const Command& app, Settings& s) {
 void add_spring_options(const Command& app, Settings& s) {
   SpringDrive& spring = s.identify.read.spring;
   const Command in = app.in("Mass on a spring");
-  const auto add = [&](const char* name, Quantity quantity, Condition& condition, const char* help) {
-    in.add_quantity(
-        name, quantity,
-        [&condition](double value) {
-          condition = {value, kTyped};
-        },
-        help);
-  };
-  add("--stiffness", Quantity::stiffness, spring.stiffness,
-      "Of the spring, where its pull, or the motion of the mass on it, is all that was recorded, 168N/m");
-  add("--mass", Quantity::mass, spring.mass,
-      "That the spring pulls, 30.7g: its inertia is taken off the pull (else sensor-inertia finds it)");
-  add("--damping", Quantity::damping, spring.damping,
-      "Beside the spring, 0.67Ns/m, where the motion alone was recorded (x_b, x_d)");
+  add_condition(in, "--stiffness", Quantity::stiffness, spring.stiffness,
+                "Of the spring, where its pull, or the motion of the mass on it, is all that was recorded, 168N/m");
+  add_condition(in, "--mass", Quantity::mass, spring.mass,
+                "That the spring pulls, 30.7g: its inertia is taken off the pull (else sensor-inertia finds it)");
+  add_condition(in, "--damping", Quantity::damping, spring.damping,
+                "Beside the spring, 0.67Ns/m, where the motion alone was recorded (x_b, x_d)");
   in.add_choice<std::optional<Counterface>>(
       "--rubs-on", spring.counterface, {{"ground", Counterface::ground}, {"base", Counterface::base}},
       "What the mass rubs on there: ground or base (else as the motion shows it)");
@@ -117,16 +146,9 @@ void add_spring_options(const Command& app, Settings& s) {
 void add_driven_options(const Command& app, Settings& s) {
   RateStateOptions& driven = s.identify.rate_state;
   const Command in = app.in("Velocity steps and holds");
-  in.add_each(
-        "--evolution",
-        [&driven, is_first = true](const std::string& name) mutable {
-          if (is_first) driven.evolutions.clear();
-          is_first = false;
-          const StateEvolution evolution = *find_state_evolution(name);
-          std::erase(driven.evolutions, evolution);
-          driven.evolutions.push_back(evolution);
-        },
-        "Law of the state, ageing or slip (repeatable; default both)")
+  in.add_each("--evolution",
+              in_place_of(driven.evolutions, [](const std::string& name) { return *find_state_evolution(name); }),
+              "Law of the state, ageing or slip (repeatable; default both)")
       .one_of(state_evolution_names());
   in.add_option("--states", s.states, "State variables, 1 or 2 (default: 2 where they describe the steps better)")
       .range(1, 2);
@@ -137,26 +159,15 @@ void add_driven_options(const Command& app, Settings& s) {
   in.add_read(
       "--reference-speed", [&](const std::string& text) { driven.reference_speed = reference_speed_from(text); },
       "v0, 1um/s (default: the speed before the first step)");
-  in.add_read(
-      "--from", [&](const std::string& text) { driven.from = stated_value(text, Quantity::time, "--from", "s"); },
-      "Nothing before this time is used, 120s");
-  in.add_read(
-      "--to", [&](const std::string& text) { driven.to = stated_value(text, Quantity::time, "--to", "s"); },
-      "Nothing after this time is used, 900s");
+  in.add_number("--from", {Quantity::time, "", "s"}, driven.from, "Nothing before this time is used, 120s");
+  in.add_number("--to", {Quantity::time, "", "s"}, driven.to, "Nothing after this time is used, 900s");
 }
 
 void add_model_options(const Command& app, Settings& s) {
   FitOptions& fit = s.identify.fit;
   const Command in = app.in(section::kFit);
-  in.add_each(
-        "--law",
-        [&laws = s.identify.laws, is_first = true](const std::string& name) mutable {
-          if (is_first) laws.clear();
-          is_first = false;
-          const Law law = make_law(name);
-          if (std::find(laws.begin(), laws.end(), law) == laws.end()) laws.push_back(law);
-        },
-        list_of_laws() + " (repeatable; default the first two)")
+  in.add_each("--law", in_place_of(s.identify.laws, [](const std::string& name) { return make_law(name); }),
+              list_of_laws() + " (repeatable; default the first two)")
       .one_of(law_keys());
   in.add_option("--effect", s.effects,
                 "Effect to add to every law, KEY or KEY:FORM (repeatable; see `identify effects`)");
@@ -172,37 +183,29 @@ void add_model_options(const Command& app, Settings& s) {
       "Seed of the random starts (default 1)");
 }
 
-void add_selection_options(const Command& app, Settings& s) {
-  Selection& selection = s.identify.selection;
-  const Command in = app.in(section::kFit);
-  in.add_read(
-      "--cycles", [&](const std::string& text) { selection.cycles = cycles_from(text); },
-      "Fit these cycles only, FIRST..LAST (numbers as in cycles.csv, from 0)");
-  in.add_each(
-      "--exclude", [&](const std::string& text) { selection.excluded.push_back(stretch_from(text)); },
-      "Exclude cycles that reach into this time: 2.5s..3.1s (repeatable)");
-}
-
 void add_parameter_options(const Command& app, Settings& s) {
   const Command in = app.in(section::kFit);
   in.add_option("--start", s.start_values, "Where the search begins: mu_s=0.5,frictional-lag.tau=2ms (repeatable)");
   in.add_option("--bounds", s.bounds, "Bounds of a parameter: alpha=0.01..0.2s/mm; equal ones hold it (repeatable)");
+  in.add_read(
+      "--cycles", [&](const std::string& text) { s.identify.selection.cycles = cycles_from(text); },
+      "Fit these cycles only, FIRST..LAST (numbers as in cycles.csv, from 0)");
+  in.add_each(
+      "--exclude", [&](const std::string& text) { s.identify.selection.excluded.push_back(stretch_from(text)); },
+      "Exclude cycles that reach into this time: 2.5s..3.1s (repeatable)");
 }
 
 void add_threads_option(const Command& app, Settings& s) {
   app.add_option("--threads", s.identify.threads, "Threads (default: all; the result is the same)").range(0, 1024);
 }
 
-void add_result_options(const Command& app, Settings& s) {
+void add_output_options(const Command& app, Settings& s, bool with_tables) {
   const Command in = app.in(section::kOutput);
   in.add_option("--json", s.json, "Write the result as JSON ('-': to standard output, without the table)");
   add_threads_option(in, s);
   in.add_flag("--quiet", s.quiet, "Do not print the table");
-}
-
-void add_output_options(const Command& app, Settings& s) {
-  add_result_options(app, s);
-  app.in(section::kOutput).add_option("--csv", s.csv, "Write samples, cycles, curves and errors into this folder");
+  if (with_tables) in.add_option("--csv", s.csv, "Write samples, cycles, curves and errors into this folder");
+  add_report_option(app, s);
 }
 
 void add_report_option(const Command& app, Settings& s) {

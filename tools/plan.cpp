@@ -1,22 +1,112 @@
 #include "tribofit/study/plan.hpp"
 
-#include <memory>
-#include <string>
-#include <string_view>
-#include <vector>
+#include <algorithm>
+#include <cmath>
 
-#include "console.hpp"
-#include "diagnosed_runs.hpp"
-#include "inputs.hpp"
-#include "means_options.hpp"
-#include "results.hpp"
-#include "tribofit/pipeline.hpp"
-#include "tribofit/report/json.hpp"
+#include "machine_options.hpp"
+#include "tribofit/ingest/spelling.hpp"
+#include "tribofit/study/sweep.hpp"
+#include "typed_values.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;
 
 namespace {
+
+/// What can be done at the rig, as typed.
+struct MeansOptions {
+  Means means;         ///< without the speeds
+  std::string speeds;  ///< which may be at the radius of the record
+};
+
+constexpr std::size_t kLevelsOfRange = 4;  // 1rpm..8rpm: 1, 2, 4 and 8 rpm
+
+/// One value with its unit, greater than zero. A bare number would be taken in SI, which nobody means here.
+double value_of(const std::string& text, Quantity quantity, const std::string& option) {
+  if (text.empty() || is_bare_number(text))
+    throw InputError(option + ": '" + text + "' has no " + (text.empty() ? "value" : "unit"),
+                     "write it as " + std::string(example_of(quantity)));
+  return positive_value(text, quantity, option);
+}
+
+/// A number as a person sets it: of two digits, within 5 %.
+double two_digits(double x) {
+  const double unit = std::pow(10.0, std::floor(std::log10(x)) - 1);
+  return std::round(x / unit) * unit;
+}
+
+/// "1rpm..8rpm" as a few values in equal ratios, those between the ends of two digits in the unit of the range where
+/// that keeps them apart, or "9mm,12mm" as they are.
+template <class ValueOf>
+std::vector<double> values_of(const std::string& text, const std::string& option, ValueOf&& value) {
+  if (text.find("..") == std::string::npos) {
+    std::vector<double> values;
+    for (const std::string& part : split(text, ',')) values.push_back(value(part));
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+    return values;
+  }
+  const auto [lower, upper] = range_ends(text, option, "1rpm..8rpm, or as a list 1rpm,2rpm,8rpm");
+  const double low = value(lower), high = value(upper);
+  if (!(high > low)) throw InputError(option + ": '" + text + "' does not rise", "write the lower value first");
+  std::vector<double> levels = evenly_spaced(low, high, kLevelsOfRange, true);
+  const double unit = low / std::stod(lower);
+  for (std::size_t k = 1; high > 1.5 * low && k + 1 < levels.size(); ++k)
+    levels[k] = unit * two_digits(levels[k] / unit);
+  return levels;
+}
+
+/// Of the disc, or at the radius.
+double disc_speed(const std::string& text, const std::string& radius) {
+  const std::string option = "--speeds";
+  if (!is_linear_speed(text)) return value_of(text, Quantity::angular_velocity, option);
+  if (radius.empty())
+    throw InputError(option + ": '" + text + "' is a speed at the radius, which is not known",
+                     "give --radius 15mm, or speeds in rpm");
+  return value_of(text, Quantity::velocity, option) / stated_value(radius, Quantity::length, "--radius");
+}
+
+void add_means_options(const Command& app, MeansOptions& m) {
+  const Command in = app.in(section::kMeans);
+  const auto add = [&](const char* name, Quantity quantity, std::vector<double>& values, const char* help) {
+    const auto read = [name, quantity, &values](const std::string& text) {
+      values = values_of(text, name, [&](const std::string& part) { return value_of(part, quantity, name); });
+    };
+    in.add_read(name, read, help);
+  };
+  Means& means = m.means;
+  in.add_option("--speeds", m.speeds, "Disc speeds, a range 1rpm..8rpm or a list 1rpm,8rpm");
+  add("--radii", Quantity::length, means.radii, "Friction radii, 9mm,12mm,18mm");
+  add("--loads", Quantity::force, means.loads, "Normal forces, 20N..100N");
+  add("--springs", Quantity::stiffness, means.springs, "Other springs, by their stiffness, 5N/mm,20N/mm");
+  add("--rates", Quantity::frequency, means.rates, "Rates of sampling, 50kHz");
+  in.add_number("--minutes", positive(Quantity::time, "", "min"), means.longest,
+                "Longest time of all runs of an experiment together (default 10)");
+  in.add_read(
+      "--pauses",
+      [&](const std::string& text) {
+        for (const std::string& part : split(text, ','))
+          means.longest_pause = std::max(means.longest_pause, value_of(part, Quantity::time, "--pauses"));
+      },
+      "The disc can be stopped between slides, for up to 100s");
+  in.add_read(
+      "--mass-below",
+      [&](const std::string& text) { means.mass_below = value_of(text, Quantity::mass, "--mass-below"); },
+      "Mass that can be added below the force sensor, 100g");
+  in.add_flag("--reversing", means.reversing, "The disc can turn forth and back");
+  in.add_flag("--tap", means.tap, "The block can be tapped, and both channels recorded");
+  in.add_flag("--lift", means.lift, "The block can be lifted off the disc, and the force sensor read");
+  in.add_flag("--accelerometer", means.accelerometer, "There is an accelerometer for the block");
+}
+
+/// In SI and checked. radius: that of the record as typed, for speeds such as 6mm/s; may be empty.
+Means means_from(const MeansOptions& m, const std::string& radius) {
+  Means means = m.means;
+  if (!m.speeds.empty()) {
+    means.speeds = values_of(m.speeds, "--speeds", [&](const std::string& part) { return disc_speed(part, radius); });
+  }
+  return means;
+}
 
 constexpr const char* kPlanFooter =
     "Diagnoses the traces and plans the run that settles what they leave open: effects that are not\n"
@@ -81,8 +171,6 @@ void add_plan(const Command& app) {
                   "Simulate no more runs after this time (10s, 2min) and report what is known");
   add_model_options(verb, *settings);
   add_parameter_options(verb, *settings);
-  add_selection_options(verb, *settings);
-  add_result_options(verb, *settings);
-  add_report_option(verb, *settings);
+  add_output_options(verb, *settings);
   verb.on_run([settings, means, verb] { return run_plan(*settings, *means, verb.own_options()); });
 }

@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
 #include <filesystem>
 #include <system_error>
 
+#include "command.hpp"
 #include "console.hpp"
-#include "exit_status.hpp"
 #include "tribofit/ingest/output_tables.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/output/digits.hpp"

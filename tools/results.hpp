@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,8 +9,6 @@
 #include "tribofit/output/whole_file.hpp"
 #include "tribofit/report/pictures.hpp"
 #include "tribofit/report/report.hpp"
-
-#include <optional>
 
 /// What is drawn of a report where that was asked for (--report, --figures), on the disc but without names until
 /// commit().

@@ -1,15 +1,3 @@
-#include <memory>
-#include <string>
-#include <vector>
-
-#include "console.hpp"
-#include "inputs.hpp"
-#include "results.hpp"
-#include "tribofit/ingest/input_error.hpp"
-#include "tribofit/pipeline.hpp"
-#include "tribofit/report/json.hpp"
-#include "tribofit/report/report.hpp"
-#include "tribofit/report/terminal.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;
@@ -29,13 +17,8 @@ ExitStatus run_rig(const Settings& s, bool keep_high_pass, const std::vector<std
   options.motion.undo_high_pass = !keep_high_pass;
   const Input input = only_input(s, options.read, "rig");
   RigIdentification result = identify_rig(input.trace, options);
-  Identification& trace = result.trace;
-  add_remarks(input, trace);
-  deliver(s, {[&] { return report_of(result, terminal_options(s, arguments_for(input, arguments))); },
-              [&] { return to_json(result, {arguments}); }});
-  if (result.rig.determined) return ExitStatus::done;
-  print_error(trace.path + ": the rig could not be identified: " + result.rig.reason);
-  return ExitStatus::failed;
+  return show_alone(s, input, result, arguments,
+                    result.rig.determined ? "" : "the rig could not be identified: " + result.rig.reason);
 }
 
 }  // namespace
@@ -49,7 +32,6 @@ void add_rig(const Command& app) {
   verb.in(section::kReading)
       .add_flag("--keep-high-pass", *keep,
                 "Do not undo a high-pass found on the velocity (one that is declared is undone)");
-  add_result_options(verb, *settings);
-  add_report_option(verb, *settings);
+  add_output_options(verb, *settings);
   verb.on_run([settings, keep, verb] { return run_rig(*settings, *keep, verb.own_options()); });
 }

@@ -42,13 +42,11 @@ void add_spring_options(const Command& app, Settings& settings);
 void add_driven_options(const Command& app, Settings& settings);
 /// Laws, effects and how they are fitted.
 void add_model_options(const Command& app, Settings& settings);
-/// Which cycles and stretches of time are fitted; where parameters begin and between which bounds they lie.
-void add_selection_options(const Command& app, Settings& settings);
+/// Where parameters begin and between which bounds they lie; which cycles and stretches of time are fitted.
 void add_parameter_options(const Command& app, Settings& settings);
 void add_threads_option(const Command& app, Settings& settings);
-/// Where the result goes, for verbs that write no tables; with tables as CSV; the page of charts and the pictures.
-void add_result_options(const Command& app, Settings& settings);
-void add_output_options(const Command& app, Settings& settings);
+/// The page of charts and the pictures; with all else that results are written to, tables as CSV for some verbs.
+void add_output_options(const Command& app, Settings& settings, bool with_tables = false);
 void add_report_option(const Command& app, Settings& settings);
 /// What several runs have in common, and earlier values.
 void add_pooling_options(const Command& app, Settings& settings);
@@ -69,44 +67,33 @@ tribofit::TerminalOptions terminal_options(const Settings& settings, const std::
 /// The source of conditions that are typed.
 inline constexpr const char* kTyped = "command line";
 
-inline constexpr const char *kStartExample = "NAME=VALUE, as in alpha=0.05s/mm",
-                            *kBoundsExample = "NAME=FROM..TO, as in alpha=0.01..0.2s/mm";
-
-/// The effect or the law of that name. Usage error when there is none, with the nearest known name.
+/// The effect of that name. Usage error when there is none, with the nearest known name.
 tribofit::Effect effect_named(const std::string& name);
-tribofit::Law law_named(const std::string& name);
 /// Usage error: two effects are the same, cannot act together, or not on one of the laws.
 void refuse_clashes(const std::vector<tribofit::Effect>& effects, const std::vector<tribofit::Law>& laws);
 /// The keys of all laws, as in "a, b or c".
 std::string list_of_laws();
 
-/// What is typed as --start and --bounds, for the parameters that the laws with these effects have. Usage error where
-/// there is no such parameter, with the nearest one, where a value cannot be read, or where a start lies beyond its
-/// bounds.
-std::vector<tribofit::GivenParameter> given_from(const Settings& settings, const std::vector<tribofit::Law>& laws,
-                                                 const std::vector<tribofit::Effect>& effects);
-/// The entry of that name, made where there is none.
-tribofit::GivenParameter& given_entry(const std::string& name, std::vector<tribofit::GivenParameter>& given);
 /// A value of a parameter of a law or an effect; a bare number is in the unit in which it is shown.
 double parameter_value(const std::string& text, const tribofit::Parameter& parameter, const std::string& option);
-/// What is typed as --cycles, and as one --exclude.
-tribofit::Selection::Cycles cycles_from(const std::string& text);
-tribofit::Selection::Stretch stretch_from(const std::string& text);
 
 /// Whether --speed states those of a load point by time.
 bool names_load_point_speeds(const Settings& settings);
 /// "0s:2um/s,60s:10um/s": speeds from times on. `option`: for messages.
 std::vector<tribofit::LoadPointPhase> phases_from(const std::string& text, const std::string& option);
-/// Speeds of the load point as --speed states them; none where it does not. Usage error: one speed alone.
-std::vector<tribofit::LoadPointPhase> load_point_from(const Settings& settings,
-                                                      std::optional<tribofit::RecordKind> kind);
 /// --reference-speed, v0.
 double reference_speed_from(const std::string& text);
-/// Adds what is typed as --start and --bounds of velocity steps and holds. fitted: values given of the laws, whose
-/// names are theirs where --kind and --speed leave the kind to the file.
-void read_driven(const Settings& settings, const std::vector<tribofit::GivenParameter>& fitted,
-                 tribofit::RateStateOptions& options);
-/// Whether --start or --bounds may name it: for such a record, which --kind, --speed or the file says it is.
-bool is_rate_state_parameter(const Settings& settings, const std::string& name);
+
+/// A parameter of friction by rate and state, of its spring, or its base friction mu_0.
+struct StateParameter {
+  std::string_view name;
+  tribofit::Quantity quantity;
+  const char* example;
+
+  /// In SI. in_newtons: of friction as a force.
+  double value(std::string text, const std::string& option, bool in_newtons = false) const;
+};
+/// Null where there is none.
+const StateParameter* find_state_parameter(std::string_view name);
 /// "a=0.01,b=0.014,D_c=10um,k=0.002/um" by names, SI. Usage error for others.
 std::map<std::string, double> rate_state_values(const std::string& text, const std::string& option);

@@ -2,33 +2,18 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdint>
-#include <map>
-#include <memory>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <utility>
-#include <vector>
 
-#include "console.hpp"
-#include "fixed_decimals.hpp"
-#include "machine_options.hpp"
-#include "simulated_drive.hpp"
-#include "simulated_steps.hpp"
+#include "simulated.hpp"
 #include "tribofit/friction/model.hpp"
-#include "tribofit/ingest/input_error.hpp"
-#include "tribofit/ingest/nearest_name.hpp"
-#include "tribofit/ingest/units.hpp"
 #include "tribofit/oscillator/presets.hpp"
-#include "tribofit/oscillator/sensors.hpp"
-#include "tribofit/oscillator/simulate.hpp"
 #include "tribofit/oscillator/simulate_recording.hpp"
 #include "tribofit/output/digits.hpp"
-#include "tribofit/output/whole_file.hpp"
 #include "tribofit/version.hpp"
 #include "typed_values.hpp"
 #include "verbs.hpp"
@@ -38,117 +23,73 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The command line as given; empty means: from the published test of the nearest radius.
-struct SimulateRequest : RecordRequest {
-  MachineRequest machine;
-  std::string noise_v = "0mm/s", scatter = "0", wander = "0";
-  std::string delay = "0s", mass_below = "0kg", high_pass = "0Hz", force_bandwidth = "0Hz", force_damping = "0.7";
-  std::string velocity_gain = "1";
-  std::string run_up, reversing, load_swing, temperature;
-  std::vector<std::string> pauses;
-  StepsRequest steps;
-};
-
 /// What is simulated.
 struct Plan {
   Machine machine;
   Drive drive;
-  Sensors sensors;
   SimulationOptions options;
   double speed = 0;           ///< [rad/s], the amplitude where the drive reverses
-  double run_up = 0;          ///< [s]
-  double reversing = 0;       ///< [Hz]
   bool writes_speed = false;  ///< the record has a channel of the disc's speed
   double preset_radius = 0;   ///< of the published test the defaults come from [m]
 };
 
-double number(const std::string& text, const char* option) {
-  return stated_value(text, Quantity::dimensionless, option);
-}
-
-void plan_drive(const SimulateRequest& request, Plan& plan) {
-  Drive& drive = plan.drive;
-  drive = plan.machine.drive();
-  plan.speed = plan.machine.speed;
-  plan.run_up = given_or(request.run_up, Quantity::time, "--run-up", "s", 0);
-  plan.reversing = given_or(request.reversing, Quantity::frequency, "--reversing", "Hz", 0);
+Plan make_plan(const SimulateRequest& request) {
+  const RequestedMachine requested = machine_from(request.machine);
+  Plan plan{requested.machine, drive_from(request, requested.machine), request.options, requested.machine.speed};
+  plan.preset_radius = requested.preset_radius;
   const bool stepped = !request.speed_steps.empty() || !request.pauses.empty();
-  if (!request.run_up.empty() + !request.reversing.empty() + stepped > 1) {
-    throw InputError("--run-up, --reversing and --speed-steps with --pause exclude each other", "give one of them");
-  }
-  if (!request.run_up.empty() && !(plan.run_up > 0)) {
-    throw InputError("--run-up is not positive", "give it as e.g. 1s, or leave it out");
-  }
-  if (plan.run_up > 0) drive.speed = run_up_speed(plan.speed, plan.run_up);
-  if (!request.reversing.empty()) drive.speed = reversing_speed(plan.speed, plan.reversing);
-  if (stepped) {
-    drive.speed = stepped_speed_from(request.speed_steps, request.pauses, plan.speed);
-    plan.speed = drive.speed.speed(0);
-  }
-  plan.writes_speed = stepped || !request.reversing.empty();
-  const double duration = stated_value(request.duration, Quantity::time, "--duration", "s");
-  if (!(duration > 0))
-    throw InputError("--duration: '" + request.duration + "' is not positive", "give it as e.g. 20s");
-  swing_load(request.load_swing, duration, drive);
-  vary_temperature(request.temperature, duration, drive);
-}
-
-Sensors plan_sensors(const SimulateRequest& request) {
-  return {.mass_below = stated_value(request.mass_below, Quantity::mass, "--mass-below", "kg"),
-          .force_bandwidth = stated_value(request.force_bandwidth, Quantity::frequency, "--force-bandwidth", "Hz"),
-          .force_damping = number(request.force_damping, "--force-damping"),
-          .friction_delay = stated_value(request.delay, Quantity::time, "--delay", "s"),
-          .velocity_gain = number(request.velocity_gain, "--velocity-gain"),
-          .velocity_high_pass = stated_value(request.high_pass, Quantity::frequency, "--high-pass", "Hz"),
-          .friction_noise = number(request.noise_mu, "--noise-mu"),
-          .velocity_noise = stated_value(request.noise_v, Quantity::velocity, "--noise-v", "mm/s"),
-          .noise_colour = number(request.noise_colour, "--noise-colour"),
-          .seed = stated_seed(request.seed_text)};
-}
-
-void refuse_work(const SimulateRequest& request, const SimulationOptions& options, const Rig& rig) {
-  constexpr double kMost = 1e8;         // 10 GB of memory, and a file of 3 GB
+  if (stepped) plan.speed = plan.drive.speed.speed(0);
+  plan.writes_speed = stepped || request.reversing;
+  constexpr double kMostSamples = 1e8;  // 10 GB of memory, and a file of 3 GB
   constexpr double kMostPeriods = 1e7;  // minutes of work for a bare law, and 2 GB of memory
-  const double samples = options.duration * options.rate;
-  const double periods = options.duration * rig.natural_frequency() / (2 * std::numbers::pi);
-  const std::string what = fmt::format("--duration {} at --rate {}", request.duration, request.rate);
-  if (samples < 2) {
-    throw InputError(what + " is less than two samples", "give a longer duration or a higher rate");
-  }
-  if (samples > kMost) {
-    throw InputError(
-        fmt::format("{} is {} samples, more than the {} that are simulated", what, general(samples, 3), general(kMost)),
-        "give a shorter duration or a lower rate");
-  }
+  check_samples(plan.options, kMostSamples);
+  const Rig& rig = plan.machine.rig;
+  const double periods = plan.options.duration * rig.natural_frequency() / (2 * std::numbers::pi);
   if (periods > kMostPeriods) {
     throw InputError(
-        fmt::format("--duration {} is {} natural periods of {} kg on {} N/mm, more than the {} that are simulated",
-                    request.duration, general(periods, 3), general(rig.mass, 3), general(1e-3 * rig.stiffness, 3),
-                    general(kMostPeriods)),
+        fmt::format("--duration is {} natural periods of {} kg on {} N/mm, more than the {} that are "
+                    "simulated",
+                    general(periods, 3), general(rig.mass, 3), general(1e-3 * rig.stiffness, 3), general(kMostPeriods)),
         "give a shorter duration");
   }
+  const bool starts_at_speed = !request.run_up && !request.reversing && plan.drive.speed.speed(0) != 0;
+  if (starts_at_speed && rig.mass > 0 && rig.stiffness > 0 && plan.machine.parameters[0] > 0)
+    plan.options.settle = settling_time(rig, plan.drive, plan.machine.parameters);
+  return plan;
 }
 
-Plan make_plan(const SimulateRequest& request) {
-  Plan plan;
-  const RequestedMachine requested = machine_from(request.machine);
-  plan.machine = requested.machine;
-  plan.preset_radius = requested.preset_radius;
-  plan_drive(request, plan);
-  plan.sensors = plan_sensors(request);
-  plan.options = {.duration = stated_value(request.duration, Quantity::time, "--duration", "s"),
-                  .rate = stated_value(request.rate, Quantity::frequency, "--rate", "Hz"),
-                  .scatter = {number(request.scatter, "--scatter"), number(request.wander, "--wander")},
-                  .seed = stated_seed(request.seed_text)};
-  if (!(plan.options.rate > 0))
-    throw InputError("--rate: '" + request.rate + "' is not positive", "give it as e.g. 20kHz");
-  refuse_work(request, plan.options, plan.machine.rig);
-  const bool starts_at_speed = plan.run_up == 0 && plan.reversing == 0 && plan.drive.speed.speed(0) != 0;
-  if (starts_at_speed && plan.machine.rig.mass > 0 && plan.machine.rig.stiffness > 0 &&
-      plan.machine.parameters[0] > 0) {
-    plan.options.settle = settling_time(plan.machine.rig, plan.drive, plan.machine.parameters);
+/// Appends value with a fixed number of decimals; the way over integers is several times faster than printing a double.
+void append_fixed(std::string& text, double value, int decimals) {
+  if (!std::isfinite(value)) {
+    throw InputError("the simulated record holds a value that is no finite number",
+                     "give friction, rig and sensors smaller values");
   }
-  return plan;
+  constexpr double kLargest = 1e9;  // whose digits fit into an integer
+  if (!(std::abs(value) < kLargest)) {
+    text += fixed(value, decimals);
+    return;
+  }
+  const double power = std::pow(10.0, decimals);
+  const auto scaled = std::llround(value * power), unit = std::llround(power);
+  const auto put = [&](long long number, std::size_t width) {
+    std::array<char, 24> digits;
+    const char* end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
+    const auto length = static_cast<std::size_t>(end - digits.data());
+    text.append(width - std::min(width, length), '0').append(digits.data(), length);
+  };
+  if (scaled < 0) text += '-';
+  put(std::abs(scaled) / unit, 1);
+  if (decimals == 0) return;
+  text += '.';
+  put(std::abs(scaled) % unit, static_cast<std::size_t>(decimals));
+}
+
+/// Decimals that give every multiple of the sampling interval exactly, at most nine.
+int time_decimals(double rate) {
+  double ticks = 1 / rate;
+  int decimals = 0;
+  for (; decimals < 9 && std::abs(ticks - std::round(ticks)) > 1e-9 * ticks; ++decimals) ticks *= 10;
+  return decimals;
 }
 
 /// A column of a CSV file: one value a row, in the unit of its header, with a fixed number of decimals.
@@ -212,7 +153,7 @@ Json cycles_json(const Plan& plan, const SimulatedMotion& motion) {
 
 /// The whole truth about a simulated trace.
 Json truth(const SimulateRequest& request, const Plan& plan, const SimulatedMotion& motion, double floor) {
-  const Sensors& sensors = plan.sensors;
+  const Sensors& sensors = request.sensors;
   return {{"tool", {{"name", "identify simulate"}, {"version", version}}},
           {"trace",
            {{"path", request.out},
@@ -224,8 +165,8 @@ Json truth(const SimulateRequest& request, const Plan& plan, const SimulatedMoti
            {{"radius_mm", 1e3 * plan.drive.radius},
             {"speed_rpm", plan.speed / kRpm},
             {"load_N", plan.drive.mean_load},
-            {"run_up_s", plan.run_up},
-            {"reversing_hz", plan.reversing},
+            {"run_up_s", request.run_up.value_or(0)},
+            {"reversing_hz", request.reversing.value_or(0)},
             {"speed_steps", request.speed_steps},
             {"pauses", request.pauses},
             {"load_swing", request.load_swing},
@@ -254,7 +195,7 @@ Json truth(const SimulateRequest& request, const Plan& plan, const SimulatedMoti
             {"force_damping_ratio", sensors.force_damping},
             {"velocity_gain", sensors.velocity_gain},
             {"velocity_high_pass_hz", sensors.velocity_high_pass}}},
-          {"seed", stated_seed(request.seed_text)},
+          {"seed", request.options.seed},
           {"floor_rmse", floor},
           {"break_aways", motion.break_away_count()},
           {"cycles", cycles_json(plan, motion)}};
@@ -262,11 +203,7 @@ Json truth(const SimulateRequest& request, const Plan& plan, const SimulatedMoti
 
 /// trace.csv -> trace.json.
 std::string json_path(const std::string& csv) {
-  const auto slash = csv.find_last_of('/');
-  const auto dot = csv.find_last_of('.');
-  const bool has_ending = dot != std::string::npos && dot != 0 && (slash == std::string::npos || dot > slash + 1);
-  const std::string stem = has_ending ? csv.substr(0, dot) : csv;
-  const std::string path = stem + ".json";
+  const std::string path = std::filesystem::path(csv).replace_extension(".json").string();
   if (path == csv) throw InputError("--out " + csv + " is where the truth is written", "give a name ending in .csv");
   return path;
 }
@@ -276,13 +213,13 @@ void run_simulate(const SimulateRequest& request) {
     throw InputError("--out - is not a file", "two files are written, the trace and the truth beside it: give a name");
   }
   const std::string truth_path = json_path(request.out);
-  if (!request.steps.kind.empty()) return simulate_steps(request, request.steps, truth_path);
+  if (!request.kind.empty()) return simulate_steps(request, truth_path);
   const Plan plan = make_plan(request);
   SimulatedMotion motion;
   double floor = 0;
   write_record(request.out, truth_path, [&](WholeFile& file) {
     SimulatedRecording simulated = simulate_recording(plan.machine.model, plan.machine.parameters, plan.machine.rig,
-                                                      plan.drive, plan.options, plan.sensors);
+                                                      plan.drive, plan.options, request.sensors);
     write_trace(file, simulated.recording.trace, plan);
     motion = std::move(simulated.motion);
     floor = simulated.floor_rmse;
@@ -292,7 +229,8 @@ void run_simulate(const SimulateRequest& request) {
   std::string text = fmt::format("{}: {} samples, {} break-aways, {}\n", request.out, motion.size(),
                                  motion.break_away_count(), plan.machine.model.name());
   text += fmt::format("{}: the truth; over slip the true law leaves an RMSE of {}\n", truth_path, fixed(floor, 6));
-  if (plan.sensors.friction_noise == 0 && plan.sensors.velocity_noise == 0 && plan.options.scatter.deviation == 0)
+  const Sensors& sensors = request.sensors;
+  if (sensors.friction_noise == 0 && sensors.velocity_noise == 0 && plan.options.scatter.deviation == 0)
     text += "without noise and scatter; --noise-mu, --noise-v and --scatter add them\n";
   if (std::abs(plan.preset_radius - plan.drive.radius) > 1e-9) {
     text +=
@@ -305,17 +243,21 @@ void run_simulate(const SimulateRequest& request) {
 }
 
 void add_options(const Command& verb, SimulateRequest& r) {
+  SimulationOptions& options = r.options;
+  Sensors& s = r.sensors;
   verb.add_option("--out", r.out, "CSV file to write; the truth goes beside it as .json").required();
-  verb.add_option("--duration", r.duration, "Duration of the record").show_default();
-  verb.add_option("--rate", r.rate, "Samples per second").show_default();
-  verb.add_option("--seed", r.seed_text, "Seed of noise and scatter").show_default();
+  verb.add_number("--duration", positive(Quantity::time, "20s", "s"), options.duration, "Duration of the record");
+  verb.add_number("--rate", positive(Quantity::frequency, "20kHz", "Hz"), options.rate, "Samples per second");
+  verb.add_read(
+      "--seed", [&](const std::string& text) { options.seed = s.seed = stated_seed(text); },
+      "Seed of noise and scatter", "1");
   verb.add_flag("--quiet", r.quiet, "Print nothing");
   add_machine_options(verb, r.machine);
-  add_steps_options(verb, r.steps);
+  add_steps_options(verb, r);
   const Command rig = verb.in("Motion of the disc, load and temperature");
-  rig.add_option("--run-up", r.run_up,
+  rig.add_number("--run-up", positive(Quantity::time, "", "s"), r.run_up,
                  "Start from standstill and reach the speed in this time; else the start is settled");
-  rig.add_option("--reversing", r.reversing,
+  rig.add_number("--reversing", {Quantity::frequency, "", "Hz"}, r.reversing,
                  "The disc goes forth and back as a sine of this frequency; --speed is its peak");
   rig.add_option("--speed-steps", r.speed_steps,
                  "Speeds from times on, of the disc 0s:2rpm,10s:4rpm,20s:-4rpm, of a load point 0s:2um/s,60s:10um/s");
@@ -324,25 +266,49 @@ void add_options(const Command& verb, SimulateRequest& r) {
                  "A sine on the load, with a load channel: amplitude and period, e.g. 10N,7s");
   rig.add_option("--temperature", r.temperature,
                  "Temperature channel: a ramp 20degC..60degC, or a swing between the two 20degC..60degC,15s");
-  const auto with_default = [](const Command& in, const char* flag, std::string& value, const char* help) {
-    in.add_option(flag, value, help).show_default();
-  };
+  constexpr Quantity kPlain = Quantity::dimensionless;
   const Command law = verb.in("Scatter of break-away");
-  with_default(law, "--scatter", r.scatter, "Standard deviation of mu_s from cycle to cycle");
-  with_default(law, "--wander", r.wander, "Correlation of the scatter between neighbouring cycles");
-  const Command sensors = verb.in("Sensors");
-  with_default(sensors, "--noise-mu", r.noise_mu, "Standard deviation of the noise on mu");
-  with_default(sensors, "--noise-v", r.noise_v, "Standard deviation of the noise on v_b");
-  with_default(sensors, "--noise-colour", r.noise_colour, "AR(1) coefficient of both noises; 0 is white");
-  with_default(sensors, "--delay", r.delay, "Time by which mu is recorded later than v_b");
-  with_default(sensors, "--mass-below", r.mass_below, "Mass below the force sensor");
-  with_default(sensors, "--force-bandwidth", r.force_bandwidth, "Second-order low-pass on mu; 0: none");
-  with_default(sensors, "--force-damping", r.force_damping, "Damping ratio of that low-pass");
-  with_default(sensors, "--velocity-gain", r.velocity_gain, "Vibrometer reading over true velocity");
-  with_default(sensors, "--high-pass", r.high_pass, "First-order high-pass of the vibrometer; 0: none");
+  law.add_number("--scatter", {kPlain, "0"}, options.scatter.deviation,
+                 "Standard deviation of mu_s from cycle to cycle");
+  law.add_number("--wander", {kPlain, "0"}, options.scatter.wander,
+                 "Correlation of the scatter between neighbouring cycles");
+  const Command in = verb.in("Sensors");
+  in.add_number("--noise-mu", {kPlain, "0"}, s.friction_noise, "Standard deviation of the noise on mu");
+  in.add_number("--noise-v", {Quantity::velocity, "0mm/s"}, s.velocity_noise, "Standard deviation of the noise on v_b");
+  in.add_number("--noise-colour", {kPlain, "0"}, s.noise_colour, "AR(1) coefficient of both noises; 0 is white");
+  in.add_number("--delay", {Quantity::time, "0s"}, s.friction_delay, "Time by which mu is recorded later than v_b");
+  in.add_number("--mass-below", {Quantity::mass, "0kg"}, s.mass_below, "Mass below the force sensor");
+  in.add_number("--force-bandwidth", {Quantity::frequency, "0Hz"}, s.force_bandwidth,
+                "Second-order low-pass on mu; 0: none");
+  in.add_number("--force-damping", {kPlain, "0.7"}, s.force_damping, "Damping ratio of that low-pass");
+  in.add_number("--velocity-gain", {kPlain, "1"}, s.velocity_gain, "Vibrometer reading over true velocity");
+  in.add_number("--high-pass", {Quantity::frequency, "0Hz"}, s.velocity_high_pass,
+                "First-order high-pass of the vibrometer; 0: none");
 }
 
 }  // namespace
+
+void check_samples(const SimulationOptions& options, double most) {
+  const double samples = options.duration * options.rate;
+  if (samples < 2)
+    throw InputError("--duration and --rate are less than two samples", "give a longer duration or a higher rate");
+  if (samples > most) {
+    throw InputError(fmt::format("--duration and --rate are {} samples, more than the {} that are simulated",
+                                 general(samples, 3), general(most)),
+                     "give a shorter duration or a lower rate, such as --rate 100Hz");
+  }
+}
+
+void write_record(const std::string& path, const std::string& truth_path,
+                  const std::function<std::string(WholeFile& record)>& work) {
+  WholeFile record(path), truth(truth_path);  // before the work, so that a bad name costs nothing
+  truth.write(work(record));
+  record.finish();
+  truth.finish();
+  record.commit();
+  truth.commit();
+}
+
 }  // namespace tribofit
 
 void add_simulate(const Command& app) {
@@ -353,8 +319,7 @@ void add_simulate(const Command& app) {
   auto request = std::make_shared<tribofit::SimulateRequest>();
   tribofit::add_options(verb, *request);
   verb.on_run([request] {
-    stated_seed(request->seed_text);
-    run_simulate(*request);
+    tribofit::run_simulate(*request);
     return ExitStatus::done;
   });
 }

@@ -1,4 +1,3 @@
-#include "simulated_drive.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "simulated.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "typed_values.hpp"
@@ -21,8 +21,7 @@ double mean_over(const std::function<double(double)>& channel, double duration) 
   return sum / kParts;
 }
 
-}  // namespace
-
+/// Speeds of the disc from "0s:2rpm,10s:4rpm" (empty: `speed` [rad/s] throughout) and pauses "10s,5s".
 SpeedProfile stepped_speed_from(const std::string& steps, const std::vector<std::string>& pause_texts, double speed) {
   std::vector<double> times, speeds;
   for (const std::string& step : steps.empty() ? std::vector<std::string>() : split(steps, ',')) {
@@ -30,10 +29,7 @@ SpeedProfile stepped_speed_from(const std::string& steps, const std::vector<std:
     times.push_back(stated_value(time, Quantity::time, "--speed-steps", "s"));
     speeds.push_back(stated_value(value, Quantity::angular_velocity, "--speed-steps", "rpm"));
   }
-  if (times.empty()) {
-    times = {0};
-    speeds = {speed};
-  }
+  if (times.empty()) times = {0}, speeds = {speed};
   std::vector<Pause> pauses;
   for (const std::string& text : pause_texts) {
     const auto [begin, duration] = two_parts(text, ",", "--pause", "10s,5s");
@@ -43,8 +39,8 @@ SpeedProfile stepped_speed_from(const std::string& steps, const std::vector<std:
   return stepped_speed(std::move(times), std::move(speeds), pauses);
 }
 
+/// "10N,7s": a sine of that amplitude and period on the load; the mean load becomes that of the record.
 void swing_load(const std::string& text, double duration, Drive& drive) {
-  if (text.empty()) return;
   const auto [size, time] = two_parts(text, ",", "--load-swing", "10N,7s");
   const double amplitude = stated_value(size, Quantity::force, "--load-swing", "N");
   const double period = stated_value(time, Quantity::time, "--load-swing", "s");
@@ -57,8 +53,9 @@ void swing_load(const std::string& text, double duration, Drive& drive) {
   drive.mean_load = mean_over(drive.load, duration);
 }
 
+/// "20degC..60degC": a ramp over the record; with ",15s" behind it a swing between the two of that period; the mean
+/// temperature becomes that of the record.
 void vary_temperature(const std::string& text, double duration, Drive& drive) {
-  if (text.empty()) return;
   const auto comma = text.find(',');
   const char* example = "20degC..60degC or 20degC..60degC,15s";
   const auto [from, to] = range_ends(text.substr(0, comma), "--temperature", example);
@@ -75,6 +72,21 @@ void vary_temperature(const std::string& text, double duration, Drive& drive) {
     };
   }
   drive.mean_temperature = mean_over(drive.temperature, duration);
+}
+
+}  // namespace
+
+Drive drive_from(const SimulateRequest& r, const Machine& machine) {
+  Drive drive = machine.drive();
+  const bool stepped = !r.speed_steps.empty() || !r.pauses.empty();
+  if (r.run_up.has_value() + r.reversing.has_value() + stepped > 1)
+    throw InputError("--run-up, --reversing and --speed-steps with --pause exclude each other", "give one of them");
+  if (r.run_up) drive.speed = run_up_speed(machine.speed, *r.run_up);
+  if (r.reversing) drive.speed = reversing_speed(machine.speed, *r.reversing);
+  if (stepped) drive.speed = stepped_speed_from(r.speed_steps, r.pauses, machine.speed);
+  if (!r.load_swing.empty()) swing_load(r.load_swing, r.options.duration, drive);
+  if (!r.temperature.empty()) vary_temperature(r.temperature, r.options.duration, drive);
+  return drive;
 }
 
 }  // namespace tribofit

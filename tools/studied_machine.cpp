@@ -1,20 +1,16 @@
 #include "studied_machine.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
 
-#include "exit_status.hpp"
 #include "inputs.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/pipeline.hpp"
 #include "tribofit/report/terminal.hpp"
 #include "tribofit/study/identified.hpp"
+#include "typed_values.hpp"
 
 using namespace tribofit;
 
@@ -34,12 +30,12 @@ void refuse_effects_without_size(const std::vector<std::string>& effects) {
 
 StudiedMachine given(const Settings& settings, MachineRequest typed) {
   refuse_effects_without_size(typed.effects);
-  if (!settings.radius.empty()) typed.radius = settings.radius;
+  if (!settings.radius.empty()) typed.radius = positive_value(settings.radius, Quantity::length, "--radius", "mm");
   typed.speed = settings.speed;
+  const Condition& load = settings.identify.read.conditions.load;
+  if (load.known()) typed.load = load.value;
   StudiedMachine out;
   out.machine = machine_from(typed).machine;
-  const Condition& load = settings.identify.read.conditions.load;
-  if (load.known()) out.machine.load = load.value;
   out.source = "given values";
   return out;
 }
@@ -52,12 +48,11 @@ void set_exact(std::vector<double>& covariance, std::size_t k) {
 
 void forget_typed(const MachineRequest& typed, const FrictionModel& model, MachineCovariance& covariance) {
   for (std::size_t k = 0; k < model.base_count(); ++k) {
-    const auto found = typed.law_parameters.find(model.parameters()[k].parameter.name);
-    if (found != typed.law_parameters.end() && !found->second.empty()) set_exact(covariance.friction, k);
+    if (typed.law_parameters.contains(model.parameters()[k].parameter.name)) set_exact(covariance.friction, k);
   }
-  if (!typed.mass.empty()) set_exact(covariance.rig, 0);
-  if (!typed.damping.empty() || !typed.damping_ratio.empty()) set_exact(covariance.rig, 1);
-  if (!typed.stiffness.empty()) set_exact(covariance.rig, 2);
+  if (typed.mass) set_exact(covariance.rig, 0);
+  if (typed.damping || typed.damping_ratio) set_exact(covariance.rig, 1);
+  if (typed.stiffness) set_exact(covariance.rig, 2);
 }
 
 [[noreturn]] void refuse(const Identification& trace, const std::string& reason) {
@@ -72,7 +67,7 @@ Settings settings_of_trace(Settings settings, const MachineRequest& typed) {
   }
   settings.effects = typed.effects;
   settings.formulas = typed.formulas;
-  if (!typed.law.empty()) settings.identify.laws = {law_named(typed.law)};
+  if (typed.law_is_typed) settings.identify.laws = {typed.law};
   settings.protocol = to_string(Protocol::joint);
   return settings;
 }
@@ -96,11 +91,9 @@ void require_machine(const Identification& trace) {
 RigFit rig_of(const Fit& fit, const Identification& trace, const Instruments& instruments,
               const MachineRequest& typed) {
   RigFit rig = rig_beside(fit, trace.motion, trace.segmentation, instruments);
-  const bool any_typed = !typed.mass.empty() || !typed.stiffness.empty() || !typed.damping.empty();
-  if (rig.per_unit_load && any_typed)
+  if (rig.per_unit_load && (typed.mass || typed.stiffness || typed.damping))
     throw InputError("no normal force is known, and a mass, stiffness or damping was given", "state --load");
-  const bool damping_typed = !typed.damping.empty() || !typed.damping_ratio.empty();
-  if (!rig.determined && !typed.mass.empty() && !typed.stiffness.empty() && damping_typed) {
+  if (!rig.determined && typed.mass && typed.stiffness && (typed.damping || typed.damping_ratio)) {
     rig.determined = true;
     rig.mass.value = rig.stiffness.value = rig.damping.value = 1;
     rig.covariance = {};

@@ -1,22 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
-#include <memory>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "console.hpp"
 #include "machine_options.hpp"
 #include "map_file.hpp"
-#include "results.hpp"
 #include "studied_machine.hpp"
-#include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/units.hpp"
-#include "tribofit/output/whole_file.hpp"
 #include "tribofit/report/study.hpp"
 #include "typed_values.hpp"
 #include "verbs.hpp"
@@ -40,12 +30,11 @@ struct StudyRequest {
   bool again = false;
 };
 
-double sharpness_from(const std::string& text) {
-  const double sharpness = positive_value(text, Quantity::inverse_velocity, "--sharpness", "s/mm");
+void set_sharpness(double sharpness, SettleOptions& settle) {
   constexpr double kMost = 1e9;  // s/m: beyond it creep in stick is lost in rounding
-  if (sharpness <= kMost) return sharpness;
-  throw InputError("--sharpness: '" + text + "' is more than 1e6 s/mm",
-                   "leave it out: stick and slip are then located as events");
+  if (sharpness > kMost)
+    throw InputError("--sharpness is more than 1e6 s/mm", "leave it out: stick and slip are then located as events");
+  settle.sharpness = sharpness;
 }
 
 /// A speed of the disc as omega r [m/s], from "6mm/s", "6" or "4rpm".
@@ -106,7 +95,7 @@ struct Begun {
   ReportOptions report;
 };
 
-Begun begin(StudyRequest& r, const Command& kind) {
+Begun begin(const StudyRequest& r, const Command& kind) {
   refuse_overwriting(r.settings, input_files(r.settings));
   Begun out;
   out.json.arguments = kind.own_options();
@@ -125,45 +114,39 @@ void deliver(const StudyRequest& r, const Begun& b, const Study& study) {
            [&](const std::string& folder) { write_study(folder, study); }});
 }
 
-void run_speed(StudyRequest& r, const Command& kind) {
-  const Begun b = begin(r, kind);
+void run_speed(const StudyRequest& r, const Begun& b) {
+  const Machine& machine = b.machine.machine;
   SpeedStudyOptions options;
   options.settle = r.settle;
   options.covariance = b.machine.covariance;
   options.threads = r.settings.identify.threads;
   options.points = r.points;
-  if (!r.range.empty()) options.velocity = velocities_from(r.range, r.points, b.machine.machine);
+  if (!r.range.empty()) options.velocity = velocities_from(r.range, r.points, machine);
   ProgressLine line;
   options.progress = [&line](double part) { line.show("motion over speed", part); };
-  const SpeedStudy study = study_speed(b.machine.machine, options);
+  const SpeedStudy study = study_speed(machine, options);
   line.end();
   deliver(r, b, study);
 }
 
-void run_phase(StudyRequest& r, const Command& kind) {
-  const Begun b = begin(r, kind);
+void run_phase(const StudyRequest& r, const Begun& b) {
+  const Machine& machine = b.machine.machine;
   std::vector<double> velocities;
-  if (!r.range.empty()) velocities = velocities_from(r.range, r.points, b.machine.machine);
-  if (!r.at.empty()) {
-    for (const std::string& text : split(r.at, ','))
-      velocities.push_back(velocity_from(text, b.machine.machine, "--at"));
-  }
-  if (velocities.empty()) velocities = {b.machine.machine.disc_velocity()};
+  if (!r.range.empty()) velocities = velocities_from(r.range, r.points, machine);
+  for (const std::string& text : r.at.empty() ? std::vector<std::string>() : split(r.at, ','))
+    velocities.push_back(velocity_from(text, machine, "--at"));
+  if (velocities.empty()) velocities = {machine.disc_velocity()};
   PortraitOptions options;
   options.cycles = r.cycles;
   options.settle = r.settle;
-  const std::vector<Portrait> study = study_phase(b.machine.machine, velocities, options);
-  deliver(r, b, study);
+  deliver(r, b, study_phase(machine, velocities, options));
 }
 
-void run_response(StudyRequest& r, const Command& kind) {
-  const Begun b = begin(r, kind);
-  const Response study = study_response(b.machine.machine, r.harmonics, r.settle);
-  deliver(r, b, study);
+void run_response(const StudyRequest& r, const Begun& b) {
+  deliver(r, b, study_response(b.machine.machine, r.harmonics, r.settle));
 }
 
-void run_sensitivity(StudyRequest& r, const Command& kind) {
-  const Begun b = begin(r, kind);
+void run_sensitivity(const StudyRequest& r, const Begun& b) {
   SensitivityOptions options;
   options.variables = r.vary;
   options.factor = r.factor;
@@ -177,11 +160,10 @@ void run_sensitivity(StudyRequest& r, const Command& kind) {
   deliver(r, b, study);
 }
 
-void run_map(StudyRequest& r, const Command& kind) {
-  const Begun b = begin(r, kind);
+void run_map(const StudyRequest& r, const Begun& b) {
+  const Machine& machine = b.machine.machine;
   const MeasureInfo& measure = measure_named(r.measure);
-  MapRequest request{b.machine.machine, axis_from(r.x, b.machine.machine, "--x"),
-                     axis_from(r.y, b.machine.machine, "--y"), r.settle};
+  const MapRequest request{machine, axis_from(r.x, machine, "--x"), axis_from(r.y, machine, "--y"), r.settle};
   check_map(request);
   MapFile file(r.settings.csv, request, r.again);
   ProgressLine progress;
@@ -199,24 +181,26 @@ void run_map(StudyRequest& r, const Command& kind) {
                        [&] { return map_json(b.machine, request, file.rows(), b.json); }});
 }
 
+using RunStudy = void (*)(const StudyRequest&, const Begun&);
+
 Command add_kind(const Command& study, const char* name, const char* help, const std::shared_ptr<StudyRequest>& r,
-                 void (*run)(StudyRequest&, const Command&)) {
+                 RunStudy run) {
   const Command kind = study.add_verb(name, help);
   kind.narrow_help();
   add_input_options(kind, r->settings);
   add_machine_numbers(kind, r->machine);
-  kind.add_read(
-      "--sharpness", [r](const std::string& text) { r->settle.sharpness = sharpness_from(text); },
+  kind.add_number(
+      "--sharpness", positive(Quantity::inverse_velocity, "", "s/mm"),
+      [r](double sharpness) { set_sharpness(sharpness, r->settle); },
       "Smooth the law by an arctangent, e.g. 500s/mm (default: stick and slip as events)");
   kind.add_choice<StartFrom>("--from", r->settle.start,
                              {{"stick", StartFrom::stick}, {"rest", StartFrom::rest}, {"sliding", StartFrom::sliding}},
                              "Begin in stick (default), at rest, or in sliding");
-  add_output_options(kind, r->settings);
-  add_report_option(kind, r->settings);
+  add_output_options(kind, r->settings, true);
   kind.option("--csv").describe("Write the tables of the study into this folder");
   kind.option("TRACE").describe("One trace (CSV) from which the machine is identified");
   kind.on_run([r, kind, run] {
-    run(*r, kind);
+    run(*r, begin(*r, kind));
     return ExitStatus::done;
   });
   return kind;
@@ -236,8 +220,7 @@ void add_study(const Command& app) {
       "  identify study speed --radius 15mm --load 50N --damping-ratio 0.05 trace.csv  # what would more damping do?\n"
       "  identify study phase --radius 15mm --at 2mm/s,6mm/s,20mm/s --csv portraits/\n"
       "  identify study map --radius 15mm --x stiffness=8N/mm..20N/mm:100 --y mass=0.5kg..1.5kg:100 --csv map/");
-  const auto kind = [&](const char* name, const char* help, const std::shared_ptr<StudyRequest>& r,
-                        void (*run)(StudyRequest&, const Command&)) {
+  const auto kind = [&](const char* name, const char* help, const std::shared_ptr<StudyRequest>& r, RunStudy run) {
     return add_kind(study, name, help, r, run).in(section::kStudy);
   };
 

@@ -1,6 +1,5 @@
-#include "summary.hpp"
+#include "batch.hpp"
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <optional>

@@ -1,17 +1,5 @@
-#include <memory>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include "console.hpp"
-#include "inputs.hpp"
-#include "memory.hpp"
-#include "results.hpp"
-#include "tribofit/pipeline.hpp"
-#include "tribofit/report/json.hpp"
-#include "tribofit/report/report.hpp"
-#include "tribofit/report/terminal.hpp"
 #include "tribofit/study/twin.hpp"
+#include "memory.hpp"
 #include "verbs.hpp"
 
 using namespace tribofit;
@@ -27,7 +15,7 @@ constexpr const char* kTwinFooter =
     "  identify twin --radius 15mm --load 50N --effect frictional-lag trace.csv";
 
 ExitStatus run_twin(const Settings& s, const std::vector<std::string>& arguments) {
-  give_memory_back();
+  set_memory(Memory::given_back);
   const IdentifyOptions options = options_from(s);
   const Input input = only_input(s, options.read, "twin");
   TwinIdentification result;
@@ -38,13 +26,8 @@ ExitStatus run_twin(const Settings& s, const std::vector<std::string>& arguments
     more.progress = [&line](std::string_view what, double part) { line.show(what, part); };
     result = identify_twin(input.trace, options, more);
   }
-  Identification& trace = result.trace;
-  add_remarks(input, trace);
-  deliver(s, {[&] { return report_of(result, terminal_options(s, arguments_for(input, arguments))); },
-              [&] { return to_json(result, {arguments}); }});
-  if (result.twin.reason.empty()) return ExitStatus::done;
-  print_error(trace.path + ": there is no twin: " + result.twin.reason);
-  return ExitStatus::failed;
+  const std::string& reason = result.twin.reason;
+  return show_alone(s, input, result, arguments, reason.empty() ? "" : "there is no twin: " + reason);
 }
 
 }  // namespace
@@ -55,7 +38,6 @@ void add_twin(const Command& app) {
   const auto settings = std::make_shared<Settings>();
   add_input_options(verb, *settings);
   add_model_options(verb, *settings);
-  add_result_options(verb, *settings);
-  add_report_option(verb, *settings);
+  add_output_options(verb, *settings);
   verb.on_run([settings, verb] { return run_twin(*settings, verb.own_options()); });
 }

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <system_error>
 
-#include "exit_status.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 
@@ -17,27 +17,17 @@ namespace {
 
 /// The largest value in SI. Each is far beyond what is built or measured: they hold for any rig.
 double largest(Quantity quantity) {
-  switch (quantity) {
-    case Quantity::time:
-      return 1e9;  // thirty years
-    case Quantity::length:
-      return 1e4;
-    case Quantity::velocity:
-      return 1e5;  // beyond what leaves the solar system
-    case Quantity::angular_velocity:
-      return 1e7;
-    case Quantity::frequency:
-    case Quantity::inverse_time:
-      return 1e10;
-    case Quantity::temperature:
-      return 1e5;
-    case Quantity::dimensionless:
-      return 1e6;
-    case Quantity::angle:
-      return 1e9;
-    default:
-      return 1e15;
-  }
+  static const std::map<Quantity, double> limits = {{Quantity::time, 1e9},  // thirty years
+                                                    {Quantity::length, 1e4},
+                                                    {Quantity::velocity, 1e5},  // beyond what leaves the solar system
+                                                    {Quantity::angular_velocity, 1e7},
+                                                    {Quantity::frequency, 1e10},
+                                                    {Quantity::inverse_time, 1e10},
+                                                    {Quantity::temperature, 1e5},
+                                                    {Quantity::dimensionless, 1e6},
+                                                    {Quantity::angle, 1e9}};
+  const auto found = limits.find(quantity);
+  return found == limits.end() ? 1e15 : found->second;
 }
 
 /// The smallest value in SI that is not zero: below it squares and reciprocals leave the range of doubles.
@@ -59,11 +49,6 @@ double positive_value(std::string_view text, Quantity quantity, const std::strin
   if (value > 0) return value;
   throw InputError(fmt::format("{}: '{}' is not greater than zero", option, text),
                    fmt::format("give {} such as {}", with_article(to_string(quantity)), example_of(quantity)));
-}
-
-double given_or(const std::string& text, Quantity quantity, const char* option, std::string_view bare_unit,
-                double otherwise) {
-  return text.empty() ? otherwise : stated_value(text, quantity, option, bare_unit);
 }
 
 std::string unit_of(std::string_view text) {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "exit_status.hpp"
+#include "command.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/units.hpp"
 
@@ -21,10 +21,6 @@ double stated_value(std::string_view text, tribofit::Quantity quantity, const st
 /// The same of a value that must be greater than zero.
 double positive_value(std::string_view text, tribofit::Quantity quantity, const std::string& option,
                       std::string_view bare_unit = {});
-
-/// The same of an option that need not be given.
-double given_or(const std::string& text, tribofit::Quantity quantity, const char* option, std::string_view bare_unit,
-                double otherwise);
 
 /// What stands behind the number; empty for a bare number.
 std::string unit_of(std::string_view text);

@@ -60,6 +60,12 @@ def copies(trace, folder, names, lines_less=1):
             out.writelines(lines[: len(lines) - lines_less * k])
 
 
+def files_of(folder):
+    """Every file of a folder and the folders in it, by its name there, with its bytes."""
+    return {os.path.relpath(os.path.join(path, name), folder): pathlib.Path(path, name).read_bytes()
+            for path, _, names in os.walk(folder) for name in names}
+
+
 def print_machine(given):
     commit = subprocess.run(["git", "-C", REPO, "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False)
     print(f"{platform.machine()}, {os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}, {given.runs} runs each, "

@@ -89,15 +89,6 @@ class Ends:
         return not faults
 
 
-def files_of(folder):
-    found = {}
-    for path, _, names in os.walk(folder):
-        for name in names:
-            with open(os.path.join(path, name), "rb") as file:
-                found[os.path.relpath(os.path.join(path, name), folder)] = file.read()
-    return found
-
-
 def half_written(found, whole):
     """Temporary files, and files that are not as the uninterrupted run left them (where that had time to end)."""
     for name, content in found.items():
@@ -123,7 +114,7 @@ def interrupted(command, folder):
         status = child.wait(PATIENCE)
         if status not in (0, 1):
             sys.exit(f"bench stop: status {status}: {' '.join(command)}"[:400])
-        whole = files_of(folder)
+        whole = harness.files_of(folder)
     except subprocess.TimeoutExpired:
         child.kill()
         child.wait()
@@ -138,7 +129,7 @@ def interrupted(command, folder):
             child.send_signal(sent)
             status = child.wait()
             ended = 1e3 * (time.monotonic() - sending)
-            found = files_of(folder)
+            found = harness.files_of(folder)
             just_before = status == 0 and sorted(found) == sorted(whole or {})
             ends.add(sent, ended, None if just_before else status)
             if sent != signal.SIGKILL:

@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <mutex>
 #include <new>
-#include <thread>
 #include <utility>
 
 #include "ingest/content_hash.hpp"
@@ -21,21 +20,20 @@
 namespace tribofit {
 namespace {
 
-/// What shows without reading whether a file is another or was written to. The time of change counts, too: that of
-/// modification is kept by those who copy.
-struct FileState {
-  std::uint64_t bytes = 0, device = 0, node = 0;
-  std::array<std::int64_t, 4> times{};
-  bool operator==(const FileState& other) const = default;
-};
+/// What shows without reading whether a file is another or was written to: bytes, place and times. The time of change
+/// counts, too: that of modification is kept by those who copy.
+using FileState = std::array<std::int64_t, 7>;
 
 FileState state_of(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return {};
-  return {static_cast<std::uint64_t>(status.st_size),
-          status.st_dev,
-          status.st_ino,
-          {status.st_mtim.tv_sec, status.st_mtim.tv_nsec, status.st_ctim.tv_sec, status.st_ctim.tv_nsec}};
+  return {status.st_size,
+          static_cast<std::int64_t>(status.st_dev),
+          static_cast<std::int64_t>(status.st_ino),
+          status.st_mtim.tv_sec,
+          status.st_mtim.tv_nsec,
+          status.st_ctim.tv_sec,
+          status.st_ctim.tv_nsec};
 }
 
 /// Keeps the traces that are in memory at the same time below a number of bytes; one alone may have more.
@@ -48,10 +46,8 @@ class Admission {
     inside_ += bytes;
   }
   void leave(std::uint64_t bytes) {
-    {
-      const std::lock_guard lock(mutex_);
-      inside_ -= bytes;
-    }
+    const std::lock_guard lock(mutex_);
+    inside_ -= bytes;
     room_.notify_all();
   }
 
@@ -74,7 +70,7 @@ class Batch {
     for (std::size_t k = 0; k < campaign.runs.size(); ++k) {
       if (k % options.shard.count + 1 != options.shard.index) continue;
       outcome_.ends.emplace_back().run = &campaign.runs[k];
-      bytes_.push_back(state_of(campaign.runs[k].trace.path).bytes);
+      bytes_.push_back(static_cast<std::uint64_t>(state_of(campaign.runs[k].trace.path).front()));
       progress_.left_bytes += bytes_.back();
     }
     progress_.total = outcome_.ends.size();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <numeric>
 
 #include "tribofit/ingest/spelling.hpp"
@@ -11,12 +12,12 @@
 namespace tribofit {
 namespace {
 
-/// The number that a cell holds, and nothing else.
-std::optional<double> number_in(const std::string& text) {
+/// The number that a cell holds, and nothing else; NaN: none.
+double number_in(const std::string& text) {
   double value = 0;
   const char* end = text.data() + text.size();
   const auto [last, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc{} && last == end ? std::optional(value) : std::nullopt;
+  return error == std::errc{} && last == end ? value : std::nan("");
 }
 
 ConditionColumn column_of(std::span<const RunResult> runs, const ConditionInfo& which) {
@@ -24,7 +25,7 @@ ConditionColumn column_of(std::span<const RunResult> runs, const ConditionInfo& 
   for (const RunResult& run : runs) {
     const Condition& said = run.run.conditions.*which.member;
     const Condition& used = said.known() ? said : run.conditions.*which.member;
-    out.number.push_back(used.known() ? std::optional(used.value / which.si) : std::nullopt);
+    out.number.push_back(used.value / which.si);
     out.text.push_back(used.known() ? fmt::format("{} {}", general(used.value / which.si), which.unit) : "");
   }
   return out;
@@ -35,9 +36,9 @@ void rank_by(const std::string& name, std::span<RunResult> runs) {
   std::iota(by_time.begin(), by_time.end(), 0u);
   std::vector<std::string> text;
   for (const RunResult& run : runs) text.push_back(value_of(run.run.others, name));
-  const bool numbers = std::ranges::all_of(text, [](const std::string& one) { return number_in(one).has_value(); });
+  const bool numbers = std::ranges::none_of(text, [](const auto& one) { return std::isnan(number_in(one)); });
   const auto before = [&](std::size_t a, std::size_t b) {  // numbers by size, anything else by its letters
-    return numbers ? *number_in(text[a]) < *number_in(text[b]) : text[a] < text[b];
+    return numbers ? number_in(text[a]) < number_in(text[b]) : text[a] < text[b];
   };
   std::stable_sort(by_time.begin(), by_time.end(), before);
   for (std::size_t first = 0; first < by_time.size();) {

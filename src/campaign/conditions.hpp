@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,9 +30,9 @@ inline void add_names(const std::vector<OtherCondition>& others, std::vector<std
 
 /// A condition over the runs of a campaign.
 struct ConditionColumn {
-  std::string name, unit;                     ///< "radius", "mm"; a further one without a unit
-  std::vector<std::string> text;              ///< of each run, as stated; empty: not stated
-  std::vector<std::optional<double>> number;  ///< the same in `unit`, where it is one
+  std::string name, unit;         ///< "radius", "mm"; a further one without a unit
+  std::vector<std::string> text;  ///< of each run, as stated; empty: not stated
+  std::vector<double> number;     ///< the same in `unit`; NaN where it is none
 };
 
 /// Radius, speed and load as stated beforehand (else as used), further columns, all that any run states.

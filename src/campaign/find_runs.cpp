@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -84,12 +85,6 @@ Run stated_run(const ManifestRow& row, const std::string& place, const ReadOptio
   return run;
 }
 
-/// `path` without the folder before it.
-std::string inside(const std::string& folder, const std::string& path) {
-  const std::string prefix = (fs::path(folder) / "").string();
-  return path.starts_with(prefix) ? path.substr(prefix.size()) : path;
-}
-
 /// The run of a file, of which its name may say something.
 Run run_at(const std::string& path, const std::optional<NamePattern>& pattern, const ReadOptions& read) {
   Run run = run_of(path, read);
@@ -136,8 +131,10 @@ void add_folder(const std::string& folder, const ReadOptions& read, const FindOp
       campaign.runs[first].notes.push_back(campaign.notes.back());  // said once
     }
   }
+  const std::string prefix = (fs::path(folder) / "").string();
   for (std::size_t k = first; k < campaign.runs.size(); ++k) {
-    campaign.runs[k].file = inside(folder, campaign.runs[k].trace.path);
+    Run& run = campaign.runs[k];
+    if (run.file.starts_with(prefix)) run.file.erase(0, prefix.size());
   }
 }
 
@@ -166,19 +163,15 @@ std::string long_name(const Run& run) {
 void name_runs(std::vector<Run>& runs) {
   std::map<std::string, std::size_t> count = {{"summary", 1}, {"campaign", 1}};  // files of the campaign itself
   for (const Run& run : runs) ++count[short_name(run)];
-  std::map<std::string, std::size_t> taken;
+  std::set<std::string> taken, seen;
   for (Run& run : runs) {
     run.name = count[short_name(run)] == 1 ? short_name(run) : long_name(run);
-    ++taken[run.name];
+    taken.insert(run.name);
   }
-  std::map<std::string, std::size_t> number;
   for (Run& run : runs) {
-    if (taken[run.name] == 1 || ++number[run.name] == 1) continue;
-    std::string name;
-    do {
-      name = fmt::format("{}-{}", run.name, number[run.name]);
-    } while (taken.contains(name) && ++number[run.name] > 0);
-    ++taken[name];
+    std::string name = run.name;
+    if (seen.insert(name).second) continue;
+    for (int number = 2; !taken.insert(name).second; ++number) name = fmt::format("{}-{}", run.name, number);
     run.name = name;
   }
 }

@@ -56,9 +56,8 @@ bool is_consistent(const Observations& o) {
     if (slip.begin != end || slip.end < slip.begin) return false;
     end = slip.end;
   }
-  const bool has_variance = !o.velocity_variance.empty();
-  return o.velocity.size() == end && o.friction.size() == end && o.weight.size() == end &&
-         (!has_variance || o.velocity_variance.size() == end);
+  const std::size_t variances = o.velocity_variance.empty() ? end : o.velocity_variance.size();
+  return o.velocity.size() == end && o.friction.size() == end && o.weight.size() == end && variances == end;
 }
 
 /// What follows from the values that were kept.

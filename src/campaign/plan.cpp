@@ -83,7 +83,7 @@ std::string campaign_json(const Campaign& campaign, const BatchOptions& options)
 
 bool follow_plan(const BatchOptions& options, Campaign& campaign) {
   if (!folder_of_campaign(options.results)) return false;  // none, or a damaged one
-  const std::vector<PlannedRun> plan = ResultReader(options.results).plan();
+  const std::vector<PlannedRun> plan = ResultReader(options.results).plan().runs;
   if (is_done(options.results, plan)) return false;
 
   std::map<std::string, Run> found;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <utility>
@@ -18,16 +17,6 @@ namespace tribofit {
 namespace {
 
 constexpr std::string_view kEnd = "\n}\n", kSeal = ",\n  \"checksum\": \"";
-
-/// The bytes of a file, empty where it cannot be read.
-std::string bytes_of(const std::string& path) {
-  constexpr std::uint64_t most = std::uint64_t{1} << 30;
-  try {
-    return text_of_file(path, most, "name a result of a batch");
-  } catch (const InputError&) {
-    return {};
-  }
-}
 
 CampaignPlan plan_in(const std::string& folder) {
   const std::string path = (std::filesystem::path(folder) / campaign_name).string();
@@ -53,9 +42,10 @@ CampaignPlan plan_in(const std::string& folder) {
 
 }  // namespace
 
+constexpr std::array<std::string_view, 3> kStatuses = {"ok", "failed", "unreadable"};
+
 std::string_view to_string(RunStatus status) {
-  if (status == RunStatus::ok) return "ok";
-  return status == RunStatus::failed ? "failed" : "unreadable";
+  return kStatuses[static_cast<std::size_t>(status)];
 }
 
 const ResultFit* RunResult::fit(std::string_view law, std::string_view protocol) const {
@@ -77,8 +67,8 @@ std::vector<const ResultFit*> joint_fits(std::span<const RunResult> runs, bool w
 }
 
 void read_json(const Json& json, RunStatus& status) {
-  const std::string name = json.get<std::string>();
-  status = name == "ok" ? RunStatus::ok : name == "failed" ? RunStatus::failed : RunStatus::unreadable;
+  const auto known = std::ranges::find(kStatuses, json.get<std::string>());
+  status = known == kStatuses.end() ? RunStatus::unreadable : static_cast<RunStatus>(known - kStatuses.begin());
 }
 
 std::string sealed(std::string_view json) {
@@ -94,10 +84,13 @@ bool is_whole(std::string_view text) {
 }
 
 std::optional<Json> read_sealed(const std::string& path) {
-  const std::string bytes = bytes_of(path);
-  if (!is_whole(bytes)) return std::nullopt;
-  Json json = Json::parse(bytes, nullptr, false);
-  return json.is_object() ? std::optional(std::move(json)) : std::nullopt;
+  try {
+    const std::string bytes = text_of_file(path, std::uint64_t{1} << 30, "name a result of a batch");
+    Json json = is_whole(bytes) ? Json::parse(bytes, nullptr, false) : Json();
+    if (json.is_object()) return json;
+  } catch (const InputError&) {  // it cannot be read
+  }
+  return std::nullopt;
 }
 
 std::optional<RunRecord> read_record(const std::string& path) {

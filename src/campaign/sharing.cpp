@@ -5,7 +5,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "conditions.hpp"
@@ -24,9 +23,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-[[noreturn]] void refuse(const std::string& what, const std::string& name, const std::vector<std::string>& known) {
+/// Refuses a name that is not known. what: "there is no ...".
+void require_known(const std::string& name, const std::vector<std::string>& known, const std::string& what) {
+  if (std::ranges::find(known, name) != known.end()) return;
   const std::string near = likely_name(name, known);
-  throw InputError(what, near.empty() ? "known are " + listed(known) : "did you mean " + near + "?");
+  throw InputError(what + " '" + name + "'",
+                   near.empty() ? "known are " + listed(known) : "did you mean " + near + "?");
 }
 
 /// Errors that were estimated one by one need not fit together: correlations are drawn in until they do.
@@ -199,32 +201,17 @@ void note_scatter(const SharedFit::Parameter& common, std::vector<std::string>& 
   }
 }
 
-/// Refuses a parameter that no law has.
-void require_known(const Sharing& sharing, const std::vector<const ResultFit*>& laws) {
-  std::vector<std::string> known;
-  for (const ResultFit* law : laws) {
-    for (const ResultParameter& p : law->parameters) place_in(known, full_name(p.name, p.effect));
-  }
-  for (const Sharing::Common& common : sharing.common) {
-    if (std::ranges::find(known, common.parameter) == known.end())
-      refuse("no law has a parameter '" + common.parameter + "'", common.parameter, known);
-  }
-}
-
 /// For every common parameter its condition in every run, as text; empty texts where it has none.
 std::vector<std::vector<std::string>> condition_texts(const Sharing& sharing, std::span<const RunResult> runs) {
   const std::vector<ConditionColumn> conditions = condition_columns(runs);
+  std::vector<std::string> names;
+  for (const ConditionColumn& column : conditions) names.push_back(column.name);
   std::vector<std::vector<std::string>> texts;
   for (const Sharing::Common& common : sharing.common) {
     texts.emplace_back(runs.size());
     if (common.condition.empty()) continue;
-    const auto at = std::ranges::find(conditions, common.condition, &ConditionColumn::name);
-    if (at == conditions.end()) {
-      std::vector<std::string> names;
-      for (const ConditionColumn& column : conditions) names.push_back(column.name);
-      refuse("no run states a condition '" + common.condition + "'", common.condition, names);
-    }
-    texts.back() = at->text;
+    require_known(common.condition, names, "no run states a condition");
+    texts.back() = std::ranges::find(conditions, common.condition, &ConditionColumn::name)->text;
   }
   return texts;
 }
@@ -291,7 +278,11 @@ std::vector<SharedFit> fit_shared(std::span<const RunResult> runs, const Sharing
                                   const ResultReader* results) {
   const std::vector<const ResultFit*> laws = joint_fits(runs, true);
   if (laws.empty()) throw InputError("no run was fitted, so there is nothing to share", "see why in the summary");
-  require_known(sharing, laws);
+  std::vector<std::string> known;
+  for (const ResultFit* law : laws) {
+    for (const ResultParameter& p : law->parameters) place_in(known, full_name(p.name, p.effect));
+  }
+  for (const Sharing::Common& common : sharing.common) require_known(common.parameter, known, "no law has a parameter");
   const std::vector<std::vector<std::string>> texts = condition_texts(sharing, runs);
   std::vector<SharedFit> out;
   for (const ResultFit* like : laws) {

@@ -1,4 +1,4 @@
-#include "tribofit/campaign/statements.hpp"
+#include "tribofit/campaign/pooled.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -96,7 +96,7 @@ void add_run(const RunFigures& figures, std::size_t group, std::vector<ErrorSums
   for (const ErrorCurve& curve : figures.errors) {
     auto at = std::ranges::find_if(
         sums, [&](const ErrorSums& s) { return s.sum.law == curve.law && s.sum.protocol == curve.protocol; });
-    if (at == sums.end()) at = sums.insert(at, {{.group = group, .law = curve.law, .protocol = curve.protocol}});
+    if (at == sums.end()) at = sums.insert(at, ErrorSums{{{curve.law, curve.protocol}, group}});
     ErrorStatement& sum = at->sum;
     at->samples += samples;
     at->bins += bins;

@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -26,9 +26,7 @@ using Eigen::VectorXd;
 /// apart than readings of one value.
 bool varies(const ConditionColumn& column) {
   std::set<double> values;
-  for (const auto& number : column.number) {
-    if (number) values.insert(*number);
-  }
+  std::ranges::copy_if(column.number, std::inserter(values, values.end()), [](double x) { return !std::isnan(x); });
   if (values.size() < 2) return false;
   const double low = *values.begin(), high = *values.rbegin();
   return column.unit.empty() || high - low > kVaries * std::max(std::abs(low), std::abs(high));
@@ -36,13 +34,11 @@ bool varies(const ConditionColumn& column) {
 
 /// omega r, by which the surfaces pass one another while the block sticks.
 ConditionColumn sliding_speed(const std::vector<ConditionColumn>& columns, std::size_t runs) {
-  ConditionColumn out{"sliding speed", "mm/s", {}, std::vector<std::optional<double>>(runs)};
+  ConditionColumn out{"sliding speed", "mm/s", {}, std::vector<double>(runs, std::nan(""))};
   const auto radius = std::ranges::find(columns, "radius", &ConditionColumn::name);
   const auto speed = std::ranges::find(columns, "speed", &ConditionColumn::name);
   if (radius == columns.end() || speed == columns.end()) return out;
-  for (std::size_t r = 0; r < runs; ++r) {
-    if (radius->number[r] && speed->number[r]) out.number[r] = *radius->number[r] * *speed->number[r] * kRpm;
-  }
+  for (std::size_t r = 0; r < runs; ++r) out.number[r] = radius->number[r] * speed->number[r] * kRpm;
   return out;
 }
 
@@ -51,7 +47,7 @@ std::vector<ConditionColumn> numbers_of(std::span<const RunResult> runs) {
   std::vector<ConditionColumn> all = condition_columns(runs);
   all.push_back(sliding_speed(all, runs.size()));
   ConditionColumn order{"order", "", {}, {}};
-  for (const RunResult& run : runs) order.number.push_back(run.order);
+  for (const RunResult& run : runs) order.number.push_back(run.order.value_or(std::nan("")));
   all.push_back(std::move(order));
   std::erase_if(all, [](const ConditionColumn& column) { return !varies(column); });
   return all;
@@ -60,7 +56,7 @@ std::vector<ConditionColumn> numbers_of(std::span<const RunResult> runs) {
 /// Of the sizes of the numbers of a column.
 double largest(const ConditionColumn& column) {
   double most = 0;
-  for (const auto& number : column.number) most = std::max(most, number ? std::abs(*number) : 0);
+  for (const double number : column.number) most = std::max(most, std::isnan(number) ? 0 : std::abs(number));
   return most > 0 ? most : 1;
 }
 
@@ -68,9 +64,9 @@ double correlation(const ConditionColumn& a, const ConditionColumn& b) {
   const double unit_a = largest(a), unit_b = largest(b);  // squares of the numbers themselves might overflow
   std::vector<double> both_a, both_b;
   for (std::size_t r = 0; r < a.number.size(); ++r) {
-    if (!a.number[r] || !b.number[r]) continue;
-    both_a.push_back(*a.number[r] / unit_a);
-    both_b.push_back(*b.number[r] / unit_b);
+    if (std::isnan(a.number[r] + b.number[r])) continue;
+    both_a.push_back(a.number[r] / unit_a);
+    both_b.push_back(b.number[r] / unit_b);
   }
   const auto mean = [](const std::vector<double>& x) {
     return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
@@ -92,10 +88,10 @@ std::optional<Trend> trend_of(std::span<const RunResult> runs, const ResultFit& 
   std::vector<double> x, y, variance;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const ResultFit* fit = runs[r].fit(like.law, like.protocol);
-    if (fit == nullptr || parameter >= fit->parameters.size() || !column.number[r]) continue;
+    if (fit == nullptr || parameter >= fit->parameters.size() || std::isnan(column.number[r])) continue;
     const ResultParameter& p = fit->parameters[parameter];
     if (p.name != like.parameters[parameter].name || !p.has_error()) continue;
-    x.push_back(*column.number[r] / unit);
+    x.push_back(column.number[r] / unit);
     y.push_back(p.value);
     variance.push_back(p.std_error * p.std_error);
   }
@@ -106,14 +102,8 @@ std::optional<Trend> trend_of(std::span<const RunResult> runs, const ResultFit& 
   const double middle = at.mean(), scale = std::sqrt((at.array() - middle).square().mean());
   design.col(1) = (at.array() - middle) / scale;
   const MetaRegression line = meta_regression(value, errors, design);
-  Trend out;
-  out.law = like.law;
   const ResultParameter& p = like.parameters[parameter];
-  out.parameter = full_name(p.name, p.effect);
-  out.unit = p.unit;
-  out.condition = column.name;
-  out.condition_unit = column.unit;
-  out.runs = x.size();
+  Trend out{like.law, full_name(p.name, p.effect), p.unit, column.name, column.unit, x.size()};
   out.slope = line.coefficients(1) / scale / unit;
   const double error = std::sqrt(line.covariance(1, 1));
   out.std_error = error / scale / unit;
@@ -185,7 +175,7 @@ std::string Trend::slope_unit() const {
 std::vector<Trend> significant_trends(const Trends& trends) {
   std::vector<Trend> out;
   for (const Trend& t : trends.trends) {
-    const bool said = std::any_of(trends.confounded.begin(), trends.confounded.end(), [&](const Confounded& pair) {
+    const bool said = std::ranges::any_of(trends.confounded, [&](const Confounded& pair) {
       return pair.b == t.condition && std::abs(pair.correlation) > kSameCondition;
     });
     if (t.p_corrected <= kSignificant && !said) out.push_back(t);

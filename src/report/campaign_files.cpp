@@ -279,7 +279,7 @@ CampaignSummary write_summary(const ResultReader& results, const std::string& co
       const std::string why = (failed ? run.file + ": the analysis could not be done: " : "") + run.message;
       if (run.status != RunStatus::ok) summary.errors.push_back(why);
     } else {
-      const PlannedRun& run = results.plan()[k];
+      const PlannedRun& run = results.plan().runs[k];
       rows.push_back(summary_row(run.name, run.file, "missing"));
       json.write(line_of(object("name", run.name, "file", run.file, "status", "missing", "message", nullptr)));
       ++summary.missing;
@@ -287,7 +287,7 @@ CampaignSummary write_summary(const ResultReader& results, const std::string& co
     }
   }
   csv.write(summary_csv(rows));
-  json.write("\n],\n\"problems\": " + line_of(results.problems()));
+  json.write("\n],\n\"problems\": " + line_of(results.plan().problems));
   if (!comparison.empty()) json.write(",\n\"comparison\": " + comparison);
   json.write("}\n");
   json.finish();

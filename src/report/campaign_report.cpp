@@ -209,7 +209,7 @@ ReportTable listed_runs(const DrawnCampaign& campaign) {
       continue;
     }
     std::vector<std::string> row(table.columns.size());
-    row[0] = campaign.results.plan()[k].name, row[4] = "missing";
+    row[0] = campaign.results.plan().runs[k].name, row[4] = "missing";
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -306,7 +306,7 @@ std::vector<std::string> run_row(const RunResult& r) {
 Report report_of(const ResultReader& results, std::span<const RunResult> runs, const Pooled& pooled,
                  const std::optional<ComparisonReport>& comparison, const ReportOptions& options) {
   const DrawnCampaign campaign(results, runs, pooled, comparison);
-  const std::string folder = results.traces().empty() ? results.folder() : results.traces();
+  const std::string folder = results.plan().folder.empty() ? results.folder() : results.plan().folder;
   const std::string input = options.inputs.empty() ? folder : options.inputs.front();
   const auto fitted = static_cast<std::size_t>(
       std::count_if(runs.begin(), runs.end(), [](const RunResult& r) { return r.run.status == RunStatus::ok; }));
@@ -318,9 +318,9 @@ Report report_of(const ResultReader& results, std::span<const RunResult> runs, c
                   {"conditions", std::to_string(campaign.groups.size())}};
   constexpr std::size_t kMostWarnings = 200;
   report.warnings = pooled.trends.warnings;
-  const auto end =
-      results.problems().begin() + static_cast<std::ptrdiff_t>(std::min(results.problems().size(), kMostWarnings));
-  report.warnings.insert(report.warnings.end(), results.problems().begin(), end);
+  const auto end = results.plan().problems.begin() +
+                   static_cast<std::ptrdiff_t>(std::min(results.plan().problems.size(), kMostWarnings));
+  report.warnings.insert(report.warnings.end(), results.plan().problems.begin(), end);
   ReportTable listed = listed_runs(campaign);
   ReportSection first{"first-runs", "", {listed}, Medium::terminal};
   first.plain("+/- is one standard error of the run, from its cycles; held-out error and noise floor are RMSE");

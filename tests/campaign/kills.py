@@ -16,6 +16,9 @@ import sys
 import tempfile
 import time
 
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scripts/benches"))
+import harness
+
 NO_LOCKS = r"""
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -35,15 +38,6 @@ int clock_gettime(clockid_t clock, struct timespec *time) {
 """
 
 
-def files_of(folder):
-    found = {}
-    for path, _, names in os.walk(folder):
-        for name in names:
-            with open(os.path.join(path, name), "rb") as file:
-                found[os.path.relpath(os.path.join(path, name), folder)] = file.read()
-    return found
-
-
 class Batches:
     """Batches of twelve runs in the current folder. Root may write everywhere: then nobody runs them."""
 
@@ -58,7 +52,7 @@ class Batches:
             os.remove(f"runs/r{k:02}.json")
         begin = time.monotonic()
         self.start(folder="reference").wait()
-        self.seconds, self.reference = time.monotonic() - begin, files_of("reference")
+        self.seconds, self.reference = time.monotonic() - begin, harness.files_of("reference")
 
     def start(self, *more, folder="results", **how):
         words = [self.identify, "--radius", "15mm", "--quiet", "--threads", "2", "--out", folder, *more, "runs"]
@@ -136,10 +130,10 @@ def main(identify, count=200, seed=1):
             shutil.rmtree("results", ignore_errors=True)
             kinds[kind]()
             # What was begun before cannot be removed after SIGKILL or from such a folder, but by the next run.
-            found = [] if kind in ("SIGKILL", "read-only folder") else [x for x in files_of("results") if x.endswith(".part")]
+            found = [] if kind in ("SIGKILL", "read-only folder") else [x for x in harness.files_of("results") if x.endswith(".part")]
             if kind != "shard killed and repeated":
                 batches.start().wait()
-            now = files_of("results")
+            now = harness.files_of("results")
             others = [x for x in sorted({*now, *batches.reference}) if now.get(x) != batches.reference.get(x)]
             if found or others:
                 print(f"{k}: {kind}: left {found}, other than in the reference: {others}", file=sys.stderr)

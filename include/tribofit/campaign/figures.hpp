@@ -14,15 +14,19 @@ namespace tribofit {
 inline constexpr double published_error_limit = 0.08;
 inline constexpr const char* published_error_limit_text = "0.08";
 
-/// The relative error of a fit over speed, as in [D] Fig 12: e = |(mu - model)/mu| (Eq 5) of the slip samples.
-struct ErrorCurve {
+/// How far a fit is off, as in [D] Fig 12: e = |(mu - model)/mu| (Eq 5) of the slip samples.
+struct RelativeErrors {
   std::string law, protocol;
   double below_limit = 0;       ///< share of the slip samples with e below published_error_limit
   double bins_below_limit = 0;  ///< share of the bins that hold samples in which e of the mean friction is below it
   double largest_of_bins = 0;   ///< largest e of the mean friction of a bin
   double mean_relative = 0, max_relative = 0;  ///< over all samples
-  /// Bin by bin: mean of the model, mean and largest e; NaN where a bin holds no samples.
-  std::vector<double> fitted, bin_mean_relative, bin_max_relative;
+};
+
+/// The same over speed, bin by bin; NaN where a bin holds no samples.
+struct ErrorCurve : RelativeErrors {
+  std::vector<double> fitted;                               ///< mean of the model
+  std::vector<double> bin_mean_relative, bin_max_relative;  ///< mean and largest e
 };
 
 /// A line of the spectrum of v_r and its multiples.
@@ -54,11 +58,10 @@ struct RunFigures {
 
 /// Takes the figures of one analysed trace.
 ///
-/// Errors: 40 bins over 0 to the fastest slip, all slip samples. Spectrum: root mean square over stretches as long as
-/// the transform of [D] (32768 samples at 20 kHz, 1.64 s; longer where that is less than five periods), Hann window,
-/// up to the eighth harmonic. The amplitude of a harmonic is that of a sine of the power within half a fundamental of
-/// it, so that periods that scatter do not lower it. Times: the first three cycles that are whole and follow each
-/// other; empty where there are none. Cost: a pass over the slips for each fit.
+/// Errors: 40 bins over 0 to the fastest slip. Spectrum: root mean square over stretches as long as the transform of
+/// [D] (1.64 s; longer where that is less than five periods), Hann window, up to the eighth harmonic. The amplitude of
+/// a harmonic is that of a sine of the power within half a fundamental of it, so that periods that scatter do not lower
+/// it. Times: the first three cycles that are whole and follow each other. Cost: a pass over the slips for each fit.
 RunFigures figures_of(const Identification& result);
 
 }  // namespace tribofit

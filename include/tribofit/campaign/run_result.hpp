@@ -157,10 +157,8 @@ class ResultReader {
   explicit ResultReader(std::string folder);
 
   const std::string& folder() const { return folder_; }
-  const std::string& traces() const { return plan_.folder; }  ///< see CampaignPlan
-  const std::vector<std::string>& problems() const { return plan_.problems; }
+  const CampaignPlan& plan() const { return plan_; }
   std::size_t size() const { return plan_.runs.size(); }  ///< runs of the campaign
-  const std::vector<PlannedRun>& plan() const { return plan_.runs; }
   /// The result of the k-th run, without its order in time; nothing where it is missing.
   std::optional<RunResult> read(std::size_t k) const;
   /// The figures kept with the result that read() returns; nothing where it could not be analysed.

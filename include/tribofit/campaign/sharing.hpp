@@ -45,8 +45,7 @@ struct SharedFit {
 
   /// Whether the runs allow what they are made to share.
   struct Test {
-    double p_value = std::numeric_limits<double>::quiet_NaN();  ///< that they differ no more than that by chance; NaN:
-                                                                ///< not tested
+    double p_value = std::numeric_limits<double>::quiet_NaN();  ///< that they differ by chance alone; NaN: not tested
     double ratio = 1;  ///< how much more they differ, in squares, than their own errors say
     bool is_refused = false;
     std::string most_different;  ///< name of the run
@@ -66,11 +65,10 @@ struct SharedFit {
 
 /// Fits the runs of a campaign together, one fit for each law.
 ///
-/// With `results`, all samples of all runs are fitted at once (one fit over many records, as each run keeps them
-/// condensed): a parameter that no run knows by itself comes out where all of them together know it. Whether the runs
-/// allow the sharing is tested by what each of them pulls at the common values; where they do not, and each run knows
-/// what is shared, or where there is no such fit (too many values, effects that act on more than speed), the single
-/// fits are combined:
+/// With `results`, all samples of all runs are fitted at once, as each run keeps them condensed: what no run knows by
+/// itself comes out where all together know it. Whether the runs allow the sharing is tested by what each pulls at the
+/// common values; where they do not, and each run knows what is shared, or where there is no such fit (too many
+/// values, effects that act on more than speed), the single fits are combined:
 ///
 /// Run i states y_i = (s_i, f_i) with covariance V_i. For the common parameters s_i = level + u_i + e_i with u_i the
 /// scatter between runs; a free parameter has no such prior, so the runs' marginal for s_i alone gives what is common

@@ -9,7 +9,7 @@
 #include "report/charts/styles.hpp"
 #include "report/numbers.hpp"
 #include "statistics/thinning.hpp"
-#include "tribofit/campaign/over_conditions.hpp"
+#include "tribofit/campaign/pool.hpp"
 
 namespace tribofit {
 namespace {
