@@ -144,8 +144,8 @@ std::string citation(const std::vector<std::string>& what) {
 }  // namespace
 
 void add_cite(const Command& app) {
-  const Command verb = app.add_verb("cite", "How to cite tribofit, its method, and the sources of laws and effects");
-  verb.footer(
+  const Command verb = app.add_verb(
+      "cite", "How to cite tribofit, its method, and the sources of laws and effects",
       "A result that --json wrote is summarised in a paragraph for a paper, with the sources of what it uses.\n\n"
       "Examples:\n"
       "  identify cite\n"
@@ -159,6 +159,5 @@ void add_cite(const Command& app) {
       text += folded(line, line.starts_with("  ") ? 4 : 0) + "\n";
     while (text.ends_with("\n\n")) text.pop_back();
     print(text);
-    return ExitStatus::done;
   });
 }

@@ -13,12 +13,6 @@ using namespace tribofit;
 
 namespace {
 
-constexpr const char* kColumnsFooter =
-    "Any file that identify reads: text, MATLAB, UFF 58 and 58b, TDMS. What it is taken for is what --columns says.\n\n"
-    "Examples:\n"
-    "  identify columns trace.csv\n"
-    "  identify columns export.mat";
-
 constexpr std::size_t kColumns = 6;
 using Row = std::array<std::string, kColumns>;
 
@@ -114,12 +108,15 @@ std::string next_step(const TriedColumns& tried, const std::string& path) {
 
 void add_columns(const Command& app) {
   const auto file = std::make_shared<std::string>();
-  const Command verb = app.add_verb("columns", "List what a file holds, with the --columns line for it");
-  verb.footer(kColumnsFooter);
+  const Command verb = app.add_verb("columns", "List what a file holds, with the --columns line for it",
+                                    "Any file that identify reads: text, MATLAB, UFF 58 and 58b, TDMS. What it is "
+                                    "taken for is what --columns says.\n\n"
+                                    "Examples:\n"
+                                    "  identify columns trace.csv\n"
+                                    "  identify columns export.mat");
   verb.add_option("FILE", *file, "File of a trace").required();
   verb.on_run([file, verb] {
     const TriedColumns tried = try_columns(*file);
     print(table_and_facts(tried.listing, *file) + next_step(tried, *file));
-    return ExitStatus::done;
   });
 }

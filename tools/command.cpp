@@ -156,18 +156,16 @@ std::string Command::likely_verb(const std::string& word) const {
   return tribofit::likely_name(word, known);
 }
 
-Command Command::add_verb(const char* name, const char* help) const {
-  return {*app_->add_subcommand(name, help), *status_};
+Command Command::add_verb(const char* name, const char* help, const char* footer) const {
+  CLI::App* verb = app_->add_subcommand(name, help);
+  if (*footer != 0) verb->footer(footer);  // else it has that of the verb above it
+  return {*verb, *status_};
 }
 
 Command Command::in(const char* section) const {
   Command out = *this;
   out.section_ = section;
   return out;
-}
-
-void Command::footer(const char* text) const {
-  app_->footer(text);
 }
 
 void Command::narrow_help() const {
@@ -236,7 +234,7 @@ Option Command::add_number(const std::string& name, const TypedNumber& how, std:
   return add_read(name, read, help, how.otherwise);
 }
 
-void Command::on_run(std::function<ExitStatus()> run) const {
+void Command::run_later(std::function<ExitStatus()> run) const {
   app_->callback([own = *this, run = std::move(run)] {
     if (!own.app_->get_subcommands().empty()) return;
     own.read_options();

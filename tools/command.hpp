@@ -5,6 +5,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -75,12 +76,12 @@ class Command {
  public:
   Command(CLI::App& app, ExitStatus& status);
 
-  Command add_verb(const char* name, const char* help) const;
+  /// footer: what stands below the options in the help of the verb.
+  Command add_verb(const char* name, const char* help, const char* footer = "") const;
   /// The same command; what is added to it stands in that section of the help.
   Command in(const char* section) const;
   /// The verb that a word is likely to mean; empty where it is like none.
   std::string likely_verb(const std::string& word) const;
-  void footer(const char* text) const;
   void narrow_help() const;
   /// The verb has kinds of its own; `advice` is the usage error where none is named.
   void requires_kind(const char* advice) const;
@@ -122,8 +123,19 @@ class Command {
     return add_read(name, read, help).one_of(words);
   }
 
-  /// What it does once its options are read. Not called where a verb of it is named.
-  void on_run(std::function<ExitStatus()> run) const;
+  /// What it does once its options are read, with its exit status unless that is always done. Not called where a verb
+  /// of it is named.
+  template <class Run>
+  void on_run(Run run) const {
+    run_later([run] {
+      if constexpr (std::is_void_v<decltype(run())>) {
+        run();
+        return ExitStatus::done;
+      } else {
+        return run();
+      }
+    });
+  }
   /// Reads what add_read() and its like hold; on_run() does. Usage error: an option that is given an empty value.
   void read_options() const;
   /// Called with the name of the verb before that runs.
@@ -152,6 +164,7 @@ class Command {
 
  private:
   Option added(CLI::Option* option) const;
+  void run_later(std::function<ExitStatus()> run) const;
 
   CLI::App* app_;
   ExitStatus* status_;

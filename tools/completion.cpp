@@ -71,13 +71,12 @@ std::string next_words(const Command& app, std::vector<std::string> before) {
 }  // namespace
 
 void add_completion(const Command& app) {
-  const Command verb = app.add_verb("completion", "Print what a shell needs to complete verbs and options");
-  verb.footer(
-      "Examples:\n"
-      "  source <(identify completion bash)         now; a package installs it for good\n"
-      "  source <(identify completion zsh)          the same for zsh\n"
-      "  identify completion fish | source          and for fish\n"
-      "  identify completion verbs                  every verb on a line of its own");
+  const Command verb = app.add_verb("completion", "Print what a shell needs to complete verbs and options",
+                                    "Examples:\n"
+                                    "  source <(identify completion bash)         now; a package installs it for good\n"
+                                    "  source <(identify completion zsh)          the same for zsh\n"
+                                    "  identify completion fish | source          and for fish\n"
+                                    "  identify completion verbs                  every verb on a line of its own");
   const auto what = std::make_shared<std::string>("bash");
   const auto before = std::make_shared<std::vector<std::string>>();
   verb.add_option("WHAT", *what, "A script for bash (default), zsh or fish, or a list of the verbs")
@@ -91,6 +90,5 @@ void add_completion(const Command& app) {
           : *what == "fish" ? kFish
           : *what == "next" ? next_words(app, *before)
                             : verbs);
-    return ExitStatus::done;
   });
 }

@@ -6,17 +6,6 @@ using namespace tribofit;
 
 namespace {
 
-constexpr const char* kDiagnoseFooter =
-    "Several traces are diagnosed together, with shared parameters; a folder stands for the runs of its\n"
-    "manifest.csv (columns file, radius, speed, load, repeat), or for every .csv in it. The last repeat of\n"
-    "each condition is held back to confirm the finding.\n"
-    "Every effect of the catalogue is tested; --effect KEY adds one to the law from the start, --formula\n"
-    "adds one of your own to those tested.\n\n"
-    "Examples:\n"
-    "  identify diagnose --radius 15mm trace.csv\n"
-    "  identify diagnose --radius 15mm --formula @mine.txt --json found.json trace.csv\n"
-    "  identify diagnose --confirm runs/r4.csv runs/";
-
 ExitStatus run_diagnose(const Settings& s, const std::vector<std::string>& arguments) {
   const IdentifyOptions options = options_from(s);
   LeftOut left_out;
@@ -45,8 +34,17 @@ ExitStatus run_diagnose(const Settings& s, const std::vector<std::string>& argum
 }  // namespace
 
 void add_diagnose(const Command& app) {
-  const Command verb = app.add_verb("diagnose", "Where a law fails, which effect explains it, what to measure next");
-  verb.footer(kDiagnoseFooter);
+  const Command verb = app.add_verb(
+      "diagnose", "Where a law fails, which effect explains it, what to measure next",
+      "Several traces are diagnosed together, with shared parameters; a folder stands for the runs of its\n"
+      "manifest.csv (columns file, radius, speed, load, repeat), or for every .csv in it. The last repeat of\n"
+      "each condition is held back to confirm the finding.\n"
+      "Every effect of the catalogue is tested; --effect KEY adds one to the law from the start, --formula\n"
+      "adds one of your own to those tested.\n\n"
+      "Examples:\n"
+      "  identify diagnose --radius 15mm trace.csv\n"
+      "  identify diagnose --radius 15mm --formula @mine.txt --json found.json trace.csv\n"
+      "  identify diagnose --confirm runs/r4.csv runs/");
   const auto settings = std::make_shared<Settings>();
   add_input_options(verb, *settings);
   add_spring_options(verb, *settings);

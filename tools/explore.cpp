@@ -3,14 +3,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <csignal>
-#include <mutex>
+#include <future>
 #include <stdexcept>
 #include <system_error>
-#include <thread>
-#include <utility>
 
 #include "memory.hpp"
 #include "tribofit/ingest/text_of_file.hpp"
@@ -20,16 +18,6 @@
 using namespace tribofit;
 
 namespace {
-
-constexpr const char* kExploreFooter =
-    "Serves a page on this machine (127.0.0.1) until Ctrl-C: choose the law and effects, drag starts and bounds,\n"
-    "choose cycles, exclude stretches of time, type a formula, change radius, speed and load; each change is fitted\n"
-    "at once, and the ladder keeps every model visited. The page shows the command that fits the model shown, and\n"
-    "saves the session as a file. The printed address holds the token that gives access.\n\n"
-    "Examples:\n"
-    "  identify explore --radius 15mm trace.csv\n"
-    "  identify explore --radius 15mm --effect viscous --port 8080 trace.csv\n"
-    "  identify explore --session trace-session.json";
 
 struct ExploreSettings : Settings {
   int port = 0;
@@ -146,48 +134,28 @@ void allow_many_connections() {
   ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-template <class Work>
-std::thread started(Work&& work) {
-  try {
-    return std::thread(std::forward<Work>(work));
-  } catch (const std::system_error&) {
-    throw std::runtime_error("the system starts no further thread; end other programs, or allow more (ulimit -u)");
-  }
-}
-
 /// Serves until a signal comes. Throws where the server ends by itself.
 void serve(WorkbenchServer& server) {
   const sigset_t signals = hold_back_signals();
-  std::mutex mutex;
-  std::condition_variable over;
-  bool ended = false;
-  std::thread answering = started([&] {
+  std::atomic<bool> ended = false;
+  const auto answer = [&] {
     server.run();
-    {
-      const std::lock_guard lock(mutex);
-      ended = true;
-      over.notify_all();
-    }
+    ended = true;
     ::kill(::getpid(), SIGTERM);  // wakes who waits for a signal, where the server has ended by itself
-  });
+  };
+  std::future<void> answering;
+  try {
+    answering = std::async(std::launch::async, answer);
+  } catch (const std::system_error&) {
+    throw std::runtime_error("the system starts no further thread; end other programs, or allow more (ulimit -u)");
+  }
   for (int signal = 0; sigwait(&signals, &signal) != 0;) {
   }
-  {
-    std::unique_lock lock(mutex);
-    if (ended) {
-      lock.unlock();
-      answering.join();
-      throw std::runtime_error("the server of the workbench has stopped unexpectedly");
-    }
-  }
+  if (ended) throw std::runtime_error("the server of the workbench has stopped unexpectedly");
   server.stop();
-  {
-    // A fit that is under way ends in a moment; one that does not is given up.
-    constexpr auto kPatience = std::chrono::milliseconds(1500);
-    std::unique_lock lock(mutex);
-    if (!over.wait_for(lock, kPatience, [&] { return ended; })) ::_exit(static_cast<int>(ExitStatus::done));
-  }
-  answering.join();
+  // A fit that is under way ends in a moment; one that does not is given up.
+  constexpr auto kPatience = std::chrono::milliseconds(1500);
+  if (answering.wait_for(kPatience) != std::future_status::ready) ::_exit(static_cast<int>(ExitStatus::done));
 }
 
 ExitStatus run_explore(ExploreSettings& s, const std::vector<std::string>& given) {
@@ -223,8 +191,16 @@ ExitStatus run_explore(ExploreSettings& s, const std::vector<std::string>& given
 }  // namespace
 
 void add_explore(const Command& app) {
-  const Command verb = app.add_verb("explore", "A live page: switch effects on and watch the error fall");
-  verb.footer(kExploreFooter);
+  const Command verb = app.add_verb(
+      "explore", "A live page: switch effects on and watch the error fall",
+      "Serves a page on this machine (127.0.0.1) until Ctrl-C: choose the law and effects, drag starts and bounds,\n"
+      "choose cycles, exclude stretches of time, type a formula, change radius, speed and load; each change is fitted\n"
+      "at once, and the ladder keeps every model visited. The page shows the command that fits the model shown, and\n"
+      "saves the session as a file. The printed address holds the token that gives access.\n\n"
+      "Examples:\n"
+      "  identify explore --radius 15mm trace.csv\n"
+      "  identify explore --radius 15mm --effect viscous --port 8080 trace.csv\n"
+      "  identify explore --session trace-session.json");
   const auto settings = std::make_shared<ExploreSettings>();
   add_options(verb, *settings);
   verb.on_run([settings, verb] {

@@ -3,8 +3,8 @@
 #include "verbs.hpp"
 
 void add_help(const Command& app) {
-  const Command verb = app.add_verb("help", "Explain a subject at length, or list the subjects");
-  verb.footer("Example:\n  identify help statistics");
+  const Command verb =
+      app.add_verb("help", "Explain a subject at length, or list the subjects", "Example:\n  identify help statistics");
   const auto topic = std::make_shared<std::string>();
   std::vector<std::string> names;
   for (const HelpText& text : help_texts()) names.emplace_back(text.topic);
@@ -21,6 +21,5 @@ void add_help(const Command& app) {
       }
     }
     print(out);
-    return ExitStatus::done;
   });
 }

@@ -24,26 +24,18 @@ bool repeats(const ManifestRow& a, const ManifestRow& b) {
   return (stated || (a.repeat && b.repeat)) && same_conditions(a, b);
 }
 
-/// The last of a group: the highest number of the repeat, then the last in order.
-std::size_t last_of(const std::vector<Input>& inputs, const std::vector<std::size_t>& group) {
-  return *std::max_element(group.begin(), group.end(), [&](std::size_t a, std::size_t b) {
-    return inputs[a].known.repeat.value_or(-1) < inputs[b].known.repeat.value_or(-1) ||
-           (inputs[a].known.repeat == inputs[b].known.repeat && a < b);
-  });
-}
-
-/// Which inputs are the last repeats of their conditions.
+/// Which inputs are the last repeats of their conditions: of the highest number, then the last in order.
 std::vector<bool> last_repeats(const std::vector<Input>& inputs) {
-  std::vector<bool> kept(inputs.size(), false), seen(inputs.size(), false);
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    if (seen[i]) continue;
-    std::vector<std::size_t> group;
-    for (std::size_t k = i; k < inputs.size(); ++k) {
-      if (seen[k] || (k > i && !repeats(inputs[i].known, inputs[k].known))) continue;
-      seen[k] = true;
-      group.push_back(k);
+  const auto rank = [&](std::size_t k) { return std::pair(inputs[k].known.repeat.value_or(-1), k); };
+  std::vector<bool> kept(inputs.size(), false);
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    bool is_last = true;
+    for (std::size_t other = 0; other < inputs.size(); ++other) {
+      if (other == k || !repeats(inputs[k].known, inputs[other].known)) continue;
+      kept[k] = true;
+      is_last = is_last && rank(other) < rank(k);
     }
-    if (group.size() > 1) kept[last_of(inputs, group)] = true;
+    kept[k] = kept[k] && is_last;
   }
   return kept;
 }

@@ -13,13 +13,6 @@ using namespace tribofit;
 
 namespace {
 
-constexpr const char* kManifestFooter =
-    "Conditions come from the names of the files (r15mm, 4rpm, 50N, 60degC, run03, _1; or as --pattern says) and from\n"
-    "lines above the table (\"Radius: 15 mm\"). What is not found is left empty.\n\n"
-    "Examples:\n"
-    "  identify manifest runs/\n"
-    "  identify manifest runs/ --pattern 'r{radius}mm_{humidity}_{repeat}.csv' --out runs/manifest.csv";
-
 struct Wanted {
   std::string folder, pattern, out;
   bool force = false;
@@ -46,14 +39,17 @@ void write_draft(const Wanted& wanted) {
 
 void add_manifest(const Command& app) {
   const auto wanted = std::make_shared<Wanted>();
-  const Command verb = app.add_verb("manifest", "Draft the manifest.csv of a folder of runs from what it finds");
-  verb.footer(kManifestFooter);
+  const Command verb =
+      app.add_verb("manifest", "Draft the manifest.csv of a folder of runs from what it finds",
+                   "Conditions come from the names of the files (r15mm, 4rpm, 50N, 60degC, run03, _1; or as --pattern "
+                   "says) and from\n"
+                   "lines above the table (\"Radius: 15 mm\"). What is not found is left empty.\n\n"
+                   "Examples:\n"
+                   "  identify manifest runs/\n"
+                   "  identify manifest runs/ --pattern 'r{radius}mm_{humidity}_{repeat}.csv' --out runs/manifest.csv");
   verb.add_option("FOLDER", wanted->folder, "Folder of traces (CSV)").required();
   verb.add_option("--pattern", wanted->pattern, "How the files are named: 'r{radius}mm_{repeat}.csv'");
   verb.add_option("--out", wanted->out, "Write it here (default: standard output)");
   verb.add_flag("--force", wanted->force, "Overwrite the file that is there");
-  verb.on_run([wanted, verb] {
-    write_draft(*wanted);
-    return ExitStatus::done;
-  });
+  verb.on_run([wanted, verb] { write_draft(*wanted); });
 }

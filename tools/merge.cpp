@@ -9,14 +9,6 @@ using namespace tribofit;
 
 namespace {
 
-constexpr const char* kMergeFooter =
-    "The shards of a campaign need only see the same folders:\n"
-    "  identify runs/ --out results/ --shard 1/2      (on one machine)\n"
-    "  identify runs/ --out results/ --shard 2/2      (on another)\n"
-    "  identify merge results/\n"
-    "The summary is the same to the last byte as that of one batch. Runs without a whole result are named, and the\n"
-    "status is 1; running a shard again does only those.";
-
 ExitStatus merge(const Settings& s, const std::string& folder, const ReportOptions& shown) {
   check_comparison(s, folder);
   refuse_overwriting(s, {s.compare});
@@ -49,8 +41,14 @@ ExitStatus merge(const Settings& s, const std::string& folder, const ReportOptio
 void add_merge(const Command& app) {
   const auto settings = std::make_shared<Settings>();
   const auto folder = std::make_shared<std::string>();
-  const Command verb = app.add_verb("merge", "Combine the results of the shards of a campaign");
-  verb.footer(kMergeFooter);
+  const Command verb = app.add_verb(
+      "merge", "Combine the results of the shards of a campaign",
+      "The shards of a campaign need only see the same folders:\n"
+      "  identify runs/ --out results/ --shard 1/2      (on one machine)\n"
+      "  identify runs/ --out results/ --shard 2/2      (on another)\n"
+      "  identify merge results/\n"
+      "The summary is the same to the last byte as that of one batch. Runs without a whole result are named, and the\n"
+      "status is 1; running a shard again does only those.");
   verb.add_option("RESULTS", *folder, "Folder of results, as given to --out").required();
   add_pooling_options(verb, *settings);
   add_compare_option(verb, *settings);

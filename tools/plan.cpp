@@ -108,16 +108,6 @@ Means means_from(const MeansOptions& m, const std::string& radius) {
   return means;
 }
 
-constexpr const char* kPlanFooter =
-    "Diagnoses the traces and plans the run that settles what they leave open: effects that are not\n"
-    "distinguishable, or one that is possible. Only what can be done is planned with; where nothing is said,\n"
-    "a quarter to four times the disc speed, and a longer record (see `identify help plan`).\n"
-    "With the new run beside the traces it goes on from there.\n\n"
-    "Examples:\n"
-    "  identify plan --radius 15mm --speeds 1rpm..8rpm --minutes 10 trace.csv\n"
-    "  identify plan --radius 15mm --speeds 1rpm..8rpm --radii 9mm,18mm --loads 20N..100N --tap trace.csv\n"
-    "  identify plan --speeds 1rpm..8rpm earlier/ new.csv";
-
 ExitStatus run_plan(const Settings& s, const MeansOptions& typed, const std::vector<std::string>& arguments) {
   const IdentifyOptions options = options_from(s);
   PlanOptions more;
@@ -160,8 +150,16 @@ ExitStatus run_plan(const Settings& s, const MeansOptions& typed, const std::vec
 }  // namespace
 
 void add_plan(const Command& app) {
-  const Command verb = app.add_verb("plan", "The run that would settle what a diagnosis leaves open");
-  verb.footer(kPlanFooter);
+  const Command verb = app.add_verb(
+      "plan", "The run that would settle what a diagnosis leaves open",
+      "Diagnoses the traces and plans the run that settles what they leave open: effects that are not\n"
+      "distinguishable, or one that is possible. Only what can be done is planned with; where nothing is said,\n"
+      "a quarter to four times the disc speed, and a longer record (see `identify help plan`).\n"
+      "With the new run beside the traces it goes on from there.\n\n"
+      "Examples:\n"
+      "  identify plan --radius 15mm --speeds 1rpm..8rpm --minutes 10 trace.csv\n"
+      "  identify plan --radius 15mm --speeds 1rpm..8rpm --radii 9mm,18mm --loads 20N..100N --tap trace.csv\n"
+      "  identify plan --speeds 1rpm..8rpm earlier/ new.csv");
   const auto settings = std::make_shared<Settings>();
   const auto means = std::make_shared<MeansOptions>();
   add_input_options(verb, *settings);

@@ -312,14 +312,11 @@ void write_record(const std::string& path, const std::string& truth_path,
 }  // namespace tribofit
 
 void add_simulate(const Command& app) {
-  const Command verb = app.add_verb("simulate", "Writes a simulated trace with the truth beside it");
-  verb.footer(
+  const Command verb = app.add_verb(
+      "simulate", "Writes a simulated trace with the truth beside it",
       "Example:\n  identify simulate --radius 15mm --effect viscous:sigma=0.001 --noise-mu 0.003 --scatter 0.004 --out "
       "trace.csv");
   auto request = std::make_shared<tribofit::SimulateRequest>();
   tribofit::add_options(verb, *request);
-  verb.on_run([request] {
-    tribofit::run_simulate(*request);
-    return ExitStatus::done;
-  });
+  verb.on_run([request] { tribofit::run_simulate(*request); });
 }

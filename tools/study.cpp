@@ -199,19 +199,15 @@ Command add_kind(const Command& study, const char* name, const char* help, const
   add_output_options(kind, r->settings, true);
   kind.option("--csv").describe("Write the tables of the study into this folder");
   kind.option("TRACE").describe("One trace (CSV) from which the machine is identified");
-  kind.on_run([r, kind, run] {
-    run(*r, begin(*r, kind));
-    return ExitStatus::done;
-  });
+  kind.on_run([r, kind, run] { run(*r, begin(*r, kind)); });
   return kind;
 }
 
 }  // namespace
 
 void add_study(const Command& app) {
-  const Command study = app.add_verb("study", "What a machine does: critical speed, portraits, sensitivities, maps");
-  study.requires_kind("name what to study: speed, phase, response, sensitivity or map");
-  study.footer(
+  const Command study = app.add_verb(
+      "study", "What a machine does: critical speed, portraits, sensitivities, maps",
       "A machine is a rig with its friction: identified from a trace, or given, or both (given values replace those\n"
       "identified). Without either it is the published test at the radius given. Beside a trace --radius, --speed and\n"
       "--load describe the record; --range and --at study other speeds.\n\n"
@@ -220,6 +216,7 @@ void add_study(const Command& app) {
       "  identify study speed --radius 15mm --load 50N --damping-ratio 0.05 trace.csv  # what would more damping do?\n"
       "  identify study phase --radius 15mm --at 2mm/s,6mm/s,20mm/s --csv portraits/\n"
       "  identify study map --radius 15mm --x stiffness=8N/mm..20N/mm:100 --y mass=0.5kg..1.5kg:100 --csv map/");
+  study.requires_kind("name what to study: speed, phase, response, sensitivity or map");
   const auto kind = [&](const char* name, const char* help, const std::shared_ptr<StudyRequest>& r, RunStudy run) {
     return add_kind(study, name, help, r, run).in(section::kStudy);
   };

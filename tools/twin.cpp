@@ -6,14 +6,6 @@ using namespace tribofit;
 
 namespace {
 
-constexpr const char* kTwinFooter =
-    "Fits the law and the rig, simulates the same conditions for as long as the record, takes the simulated\n"
-    "record through the same steps and compares the motions. With --effect there is a twin of the bare\n"
-    "law and one of the law with the effects.\n\n"
-    "Examples:\n"
-    "  identify twin --radius 15mm --load 50N trace.csv\n"
-    "  identify twin --radius 15mm --load 50N --effect frictional-lag trace.csv";
-
 ExitStatus run_twin(const Settings& s, const std::vector<std::string>& arguments) {
   set_memory(Memory::given_back);
   const IdentifyOptions options = options_from(s);
@@ -33,8 +25,14 @@ ExitStatus run_twin(const Settings& s, const std::vector<std::string>& arguments
 }  // namespace
 
 void add_twin(const Command& app) {
-  const Command verb = app.add_verb("twin", "The motion that law and rig predict beside the measured one");
-  verb.footer(kTwinFooter);
+  const Command verb = app.add_verb(
+      "twin", "The motion that law and rig predict beside the measured one",
+      "Fits the law and the rig, simulates the same conditions for as long as the record, takes the simulated\n"
+      "record through the same steps and compares the motions. With --effect there is a twin of the bare\n"
+      "law and one of the law with the effects.\n\n"
+      "Examples:\n"
+      "  identify twin --radius 15mm --load 50N trace.csv\n"
+      "  identify twin --radius 15mm --load 50N --effect frictional-lag trace.csv");
   const auto settings = std::make_shared<Settings>();
   add_input_options(verb, *settings);
   add_model_options(verb, *settings);

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "command.hpp"
@@ -41,8 +40,4 @@ inline std::map<std::string, std::string> files_in(const std::filesystem::path& 
     if (!entry.is_directory()) files[entry.path().lexically_relative(folder).string()] = contents(entry.path());
   }
   return files;
-}
-
-inline nlohmann::json json_in(const std::filesystem::path& path) {
-  return nlohmann::json::parse(contents(path));
 }

@@ -146,13 +146,13 @@ TEST(SharedRuns, OfTwinsTheyAgreeWithTheSingleFits) {
   const auto single = json_in(shop / "res/summary.json")["runs"];
   double sum = 0, weights = 0, scatter = 0;
   for (const auto& run : single) {
-    const auto& alpha = run["fits"][0]["parameters"][2];
+    const auto alpha = parameter(run["fits"][0], "alpha");
     const double weight = std::pow(alpha["std_error"].get<double>(), -2);
     sum += weight * alpha["value"].get<double>();
     weights += weight;
   }
   for (const auto& run : single) {
-    const auto& alpha = run["fits"][0]["parameters"][2];
+    const auto alpha = parameter(run["fits"][0], "alpha");
     scatter += std::pow((alpha["value"].get<double>() - sum / weights) / alpha["std_error"].get<double>(), 2);
   }
   const double error = 1 / std::sqrt(weights);

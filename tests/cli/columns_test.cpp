@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "../ingest/record_files.hpp"
@@ -78,7 +77,7 @@ TEST(Columns, NamesAndUnitsSuggestChannels) {
 json identified(const Workshop& shop, const std::string& arguments) {
   const Outcome outcome = shop.identify("--quiet --json r.json " + arguments + " trace.csv");
   EXPECT_EQ(outcome.status, 0) << arguments << "\n" << outcome.err;
-  json result = json::parse(contents(shop / "r.json"), nullptr, false);
+  json result = json_in(shop / "r.json");
   result["tool"].erase("arguments");
   return result;
 }

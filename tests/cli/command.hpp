@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -37,6 +38,18 @@ class Workshop : public tribofit::Folder {
  private:
   Folder logs_;  ///< beside it, so that it holds nothing but what the command wrote
 };
+
+inline nlohmann::json json_in(const std::filesystem::path& path) {
+  return nlohmann::json::parse(contents(path));
+}
+
+/// The parameter of that name of a fit or an effect; null where there is none.
+inline nlohmann::json parameter(const nlohmann::json& fit, const std::string& name) {
+  for (const auto& one : fit.at("parameters")) {
+    if (one.at("name") == name) return one;
+  }
+  return nullptr;
+}
 
 /// A simulated trace of the published rig at 15 mm (14 cycles in 3 s at 5 kHz), made once.
 inline const std::string& good_trace() {

@@ -1,8 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "../ingest/record_files.hpp"
 #include "command.hpp"
 
@@ -51,7 +49,7 @@ TEST(FormatsOfFiles, OneRecordGivesOneResult) {
   const auto result_of = [&](const std::string& name) {
     const Outcome outcome = shop.identify("--radius 15mm --quiet --json r.json " + name);
     EXPECT_EQ(outcome.status, 0) << name << ": " << outcome.err;
-    auto result = nlohmann::json::parse(contents(shop / "r.json"));
+    auto result = json_in(shop / "r.json");
     EXPECT_EQ(result["trace"]["path"], name);
     result["trace"].erase("path");
     return result;

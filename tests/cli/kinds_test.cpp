@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "command.hpp"
@@ -42,7 +41,7 @@ TEST(KindsOfRecord, AMotionAloneGivesFrictionAgainstVelocity) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("motion-only (no friction was recorded)"), HasSubstr("level"),
                                  HasSubstr("the two levels agree"), HasSubstr("rubs on")));
-  const json result = json::parse(contents(shop / "j.json"));
+  const json result = json_in(shop / "j.json");
   EXPECT_EQ(result["trace"]["kind"], "motion-only");
   EXPECT_EQ(result["conditions"]["spring"]["rubs_on"], "ground");
   ASSERT_EQ(result["friction_over_velocity"]["levels"].size(), 2);
@@ -70,7 +69,7 @@ TEST(KindsOfRecord, FrictionAloneGivesItsSlips) {
   EXPECT_THAT(outcome.out,
               AllOf(HasSubstr("force-only (no motion was recorded)"), HasSubstr("break-away"),
                     HasSubstr("a law needs the sliding velocity"), HasSubstr("identify columns cell.csv")));
-  const json force = json::parse(contents(shop / "j.json"))["force"];
+  const json force = json_in(shop / "j.json")["force"];
   EXPECT_EQ(force["slips"], 48);
   EXPECT_NEAR(force["peak"]["mean"].get<double>(), 12, 0.02);
   EXPECT_NEAR(force["drop"]["mean"].get<double>(), 4, 0.03);

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <random>
 
@@ -116,7 +115,7 @@ TEST_P(Matrix, EveryOutputOfEveryKindOfRecordIsWhole) {
       for (const char* table : {"samples.csv", "cycles.csv", "curves.csv", "errors.csv"})
         expect_whole_table(shop / (std::string("tables/") + table));
       EXPECT_EQ(lines_of(contents(shop / "tables/samples.csv")).size(),
-                1 + json::parse(contents(shop / "r.json"))["trace"]["samples"].get<std::size_t>());
+                1 + json_in(shop / "r.json")["trace"]["samples"].get<std::size_t>());
     }
     if (page) {
       EXPECT_NE(contents(shop / "r.html").find("</html>"), std::string::npos);
@@ -145,7 +144,7 @@ TEST(NeverSticks, SlowSlidingIsFittedAndCounted) {
   ASSERT_EQ(found.status, 0) << found.err;
   EXPECT_THAT(found.out, testing::HasSubstr("the block never sticks"));
   EXPECT_THAT(found.out, testing::HasSubstr("of 4 000 samples"));
-  EXPECT_EQ(json::parse(contents(shop / "r.json"))["stick_slip"]["motion"], "always-slipping");
+  EXPECT_EQ(json_in(shop / "r.json")["stick_slip"]["motion"], "always-slipping");
   const Outcome said = shop.identify("--radius 15mm --stick-below 3mm/s trace.csv");
   EXPECT_THAT(said.out, testing::HasSubstr("below 3.0 mm/s"));
   EXPECT_EQ(shop.identify("--radius 15mm --stick-below 3mm/s --never-sticks trace.csv").status, 2);

@@ -1,8 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "command.hpp"
 
 namespace {
@@ -43,7 +41,7 @@ TEST(PlanCommand, WhereNothingIsOpenItSaysSoAndHowToConfirm) {
   ASSERT_EQ(o.status, 0) << o.err;
   EXPECT_THAT(o.out, HasSubstr("none is possible"));
   EXPECT_THAT(o.out, HasSubstr("identify diagnose --radius 15mm --load 50N"));
-  const auto plan = nlohmann::json::parse(contents(shop / "plan.json"));
+  const auto plan = json_in(shop / "plan.json");
   EXPECT_EQ(plan.at("plan").at("question"), "nothing");
   EXPECT_TRUE(plan.at("plan").at("experiments").empty());
   EXPECT_EQ(plan.at("diagnosis").at("verdict"), "sufficient");
@@ -61,7 +59,7 @@ TEST(PlanCommand, NamesTheExperimentAndTheCommandThatComesAfterIt) {
   EXPECT_THAT(o.out, HasSubstr("Open: frictional-lag"));
   EXPECT_THAT(o.out, HasSubstr("Best: tap the block"));
   EXPECT_THAT(o.out, HasSubstr("identify diagnose --instruments lab.json --radius 15mm --load 50N lag.csv"));
-  const auto plan = nlohmann::json::parse(contents(shop / "plan.json")).at("plan");
+  const auto plan = json_in(shop / "plan.json").at("plan");
   EXPECT_EQ(plan.at("question"), "group");
   EXPECT_FALSE(plan.at("usual_means"));
   EXPECT_EQ(plan.at("experiments").at(0).at("tap_hz"), 50000);
@@ -80,14 +78,14 @@ TEST(PlanCommand, AZeroIsReadWithTheBlockLiftedAndDeclared) {
   ASSERT_EQ(o.status, 0) << o.err;
   EXPECT_THAT(o.out, HasSubstr("Best: lift the block off the disc"));
   EXPECT_THAT(o.out, HasSubstr("force_sensor.zero"));
-  const auto plan = nlohmann::json::parse(contents(shop / "plan.json")).at("plan");
+  const auto plan = json_in(shop / "plan.json").at("plan");
   EXPECT_TRUE(plan.at("experiments").at(0).at("lift"));
   // Declared as it would be read, it is corrected, and nothing is left to name.
   std::ofstream(shop / "lab.json") << R"({"force_sensor": {"zero": ["0.02", "0.0005"]}})";
   const Outcome after =
       shop.identify("diagnose --instruments lab.json --radius 15mm --load 50N --json after.json z.csv");
   ASSERT_EQ(after.status, 0) << after.err;
-  const auto ladder = nlohmann::json::parse(contents(shop / "after.json")).at("diagnosis").at("ladder");
+  const auto ladder = json_in(shop / "after.json").at("diagnosis").at("ladder");
   EXPECT_EQ(ladder.size(), 1U);
 }
 

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "command.hpp"
@@ -26,13 +25,6 @@ std::string joint_table() {
   return text;
 }
 
-double value(const json& fit, const std::string& name) {
-  for (const json& p : fit["parameters"]) {
-    if (p["name"] == name) return p["value"];
-  }
-  return NAN;
-}
-
 TEST(PointsCommand, ATableIsFittedAsItIs) {
   const Workshop shop;
   shop.write("joint.csv", joint_table());
@@ -40,14 +32,14 @@ TEST(PointsCommand, ATableIsFittedAsItIs) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out.substr(0, outcome.out.find('\n')), HasSubstr("joint.csv: points (no time column)"));
   EXPECT_THAT(outcome.out, Not(HasSubstr("-cycle")));
-  const json j = json::parse(contents(shop / "j.json"));
+  const json j = json_in(shop / "j.json");
   EXPECT_EQ(j["trace"]["kind"], "points");
   EXPECT_TRUE(j["trace"]["duration_s"].is_null());
   const json& best = j["fits"][j["best"].get<std::size_t>()];
   EXPECT_EQ(best["effects"], json({"viscous"}));
-  EXPECT_NEAR(value(best, "mu_k"), 1.97, 0.02);
-  EXPECT_NEAR(value(best, "mu_s"), 2.431, 0.05);
-  EXPECT_NEAR(value(best, "alpha"), 0.0588, 0.01);
+  EXPECT_NEAR(parameter(best, "mu_k")["value"].get<double>(), 1.97, 0.02);
+  EXPECT_NEAR(parameter(best, "mu_s")["value"].get<double>(), 2.431, 0.05);
+  EXPECT_NEAR(parameter(best, "alpha")["value"].get<double>(), 0.0588, 0.01);
   EXPECT_THAT(contents(shop / "out/samples.csv"), HasSubstr("\n,"));  // no time
   EXPECT_THAT(contents(shop / "r.html"), HasSubstr("measured, backwards"));
   EXPECT_THAT(shop.identify("--kind sliding --rate 1Hz joint.csv").out, HasSubstr("joint.csv: sliding (stated)"));
@@ -59,7 +51,7 @@ TEST(PointsCommand, ATableIsDiagnosed) {
   const Outcome outcome = shop.identify("diagnose --json j.json --csv out --report r.html joint.csv");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("points (no time column)"));
-  const json j = json::parse(contents(shop / "j.json"));
+  const json j = json_in(shop / "j.json");
   EXPECT_EQ(j["diagnosis"]["ladder"][1]["added"], "viscous");
 }
 

@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "command.hpp"
@@ -27,7 +26,7 @@ TEST(RigCommand, GivesTheRigAndNamesTheTwin) {
   EXPECT_THAT(outcome.err, IsEmpty());
   EXPECT_THAT(outcome.out, HasSubstr("m - m_s"));
   EXPECT_THAT(outcome.out, HasSubstr("\n  identify twin --radius 15mm --load 50N trace.csv\n"));
-  const json j = json::parse(contents(shop / "rig.json"));
+  const json j = json_in(shop / "rig.json");
   const json& rig = j["rig"];
   EXPECT_TRUE(rig["determined"]);
   EXPECT_NEAR(rig["mass_kg"]["value"], 0.85, 0.0085);
@@ -65,11 +64,11 @@ TEST(RigCommand, AHighPassThatIsKeptSpoilsTheDampingAndIsNamed) {
       "--out trace.csv --quiet");
   const Outcome undone = shop.identify("rig --radius 15mm --load 50N --json undone.json trace.csv");
   EXPECT_EQ(undone.status, 0) << undone.err;
-  EXPECT_NEAR(json::parse(contents(shop / "undone.json"))["rig"]["damping_ratio"]["value"], 0.02, 0.002);
+  EXPECT_NEAR(json_in(shop / "undone.json")["rig"]["damping_ratio"]["value"], 0.02, 0.002);
   const Outcome kept = shop.identify("rig --radius 15mm --load 50N --keep-high-pass --json kept.json trace.csv");
   EXPECT_EQ(kept.status, 1);
   EXPECT_THAT(kept.err, HasSubstr("high-pass"));
-  const json rig = json::parse(contents(shop / "kept.json"))["rig"];
+  const json rig = json_in(shop / "kept.json")["rig"];
   EXPECT_FALSE(rig["determined"]);
   EXPECT_LT(rig["damping_ratio"]["value"], 0);
   EXPECT_NEAR(rig["high_pass_hz"]["value"], 0.5, 0.02);
@@ -94,7 +93,7 @@ TEST(RigCommand, WhatCannotBeHadIsSaidWithStatusOne) {
   const Outcome sticks = shop.identify("rig --radius 15mm --load 50N --json s.json sticks.csv");
   EXPECT_EQ(sticks.status, 1);
   EXPECT_THAT(sticks.err, HasSubstr("never slips"));
-  const json rig = json::parse(contents(shop / "s.json"))["rig"];
+  const json rig = json_in(shop / "s.json")["rig"];
   EXPECT_TRUE(rig["mass_kg"].is_null());
   EXPECT_NEAR(rig["stiffness_N_per_mm"]["value"], 16.2, 1);
   shop.shell(

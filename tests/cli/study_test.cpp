@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "command.hpp"
@@ -21,7 +20,7 @@ TEST(StudyCommand, SpeedSaysTheCriticalSpeedBothWaysInEveryForm) {
   EXPECT_THAT(outcome.err, IsEmpty());
   EXPECT_THAT(outcome.out, HasSubstr("steady sliding loses its stability below"));
   EXPECT_THAT(outcome.out, HasSubstr("\n  identify study sensitivity --radius 15mm\n"));
-  const json study = json::parse(contents(shop / "s.json"))["study"];
+  const json study = json_in(shop / "s.json")["study"];
   EXPECT_EQ(study["kind"], "speed");
   // c = N (mu_s - mu_k) alpha exp(-alpha v) at the published 15 mm test with our rig.
   EXPECT_NEAR(study["critical_speed"]["linear_mm_s"][0], std::log(50 * 0.191 * 52.14 / 4.693826) / 0.05214, 0.01);
@@ -37,7 +36,7 @@ TEST(StudyCommand, WhatWouldMoreDampingDo) {
   ASSERT_EQ(shop.identify("study speed --radius 15mm --load 50N --json a.json trace.csv").status, 0);
   ASSERT_EQ(shop.identify("study speed --radius 15mm --load 50N --damping-ratio 0.1 --json b.json trace.csv").status,
             0);
-  const json a = json::parse(contents(shop / "a.json"))["study"], b = json::parse(contents(shop / "b.json"))["study"];
+  const json a = json_in(shop / "a.json")["study"], b = json_in(shop / "b.json")["study"];
   EXPECT_NEAR(a["machine"]["mass_kg"], 0.85, 0.01);
   EXPECT_EQ(b["machine"]["mass_kg"], a["machine"]["mass_kg"]);
   EXPECT_NEAR(b["machine"]["damping_ratio"], 0.1, 1e-12);
@@ -79,7 +78,7 @@ TEST(StudyCommand, AMassThatTheLawFindsBelowTheSensorSwingsWithTheBlock) {
   const Outcome outcome =
       shop.identify("study phase --radius 15mm --load 50N --json a.json --effect sensor-inertia trace.csv");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const json machine = json::parse(contents(shop / "a.json"))["study"]["machine"];
+  const json machine = json_in(shop / "a.json")["study"]["machine"];
   EXPECT_NEAR(machine["mass_kg"], 0.85, 0.02);
   EXPECT_THAT(machine["notes"].dump(), HasSubstr("below the force sensor"));
 }
@@ -90,7 +89,7 @@ TEST(StudyCommand, EveryKindWritesItsTables) {
   EXPECT_THAT(contents(shop / "p/phase_1.csv"), HasSubstr("time_s,displacement_mm,block_velocity_mm_s"));
   EXPECT_THAT(contents(shop / "p/cycle_1.csv"), HasSubstr(",slip\n"));
   EXPECT_FALSE(std::filesystem::exists(shop / "p/cycle_2.csv"));  // dies out: no cycle
-  EXPECT_EQ(json::parse(contents(shop / "p.json"))["study"]["portraits"][1]["settled"]["regime"], "sliding");
+  EXPECT_EQ(json_in(shop / "p.json")["study"]["portraits"][1]["settled"]["regime"], "sliding");
   ASSERT_EQ(shop.identify("study response --radius 15mm --csv r").status, 0);
   EXPECT_THAT(contents(shop / "r/harmonics.csv"), HasSubstr("harmonic,frequency_hz,force_N"));
   ASSERT_EQ(shop.identify("study sensitivity --radius 15mm --vary stiffness --vary ratio --csv s").status, 0);

@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "command.hpp"
@@ -20,7 +19,7 @@ TEST(TwinCommand, ATwinOfAPlainTraceAgreesAndHandsOverToTheStudy) {
   EXPECT_THAT(outcome.err, IsEmpty());
   EXPECT_THAT(outcome.out, HasSubstr("moves as the record does"));
   EXPECT_THAT(outcome.out, HasSubstr("\n  identify study speed --radius 15mm --load 50N trace.csv\n"));
-  const json j = json::parse(contents(shop / "t.json"));
+  const json j = json_in(shop / "t.json");
   const json& twin = j["twin"];
   EXPECT_EQ(twin["columns"], json::array({"exponential"}));
   ASSERT_EQ(twin["measures"].size(), 13u);
@@ -61,7 +60,7 @@ TEST(TwinCommand, WhatCannotBeHadIsSaidWithStatusOne) {
   const Outcome sticks = shop.identify("twin --radius 15mm --load 50N --json s.json sticks.csv");
   EXPECT_EQ(sticks.status, 1);
   EXPECT_THAT(sticks.err, HasSubstr("never slips"));
-  EXPECT_TRUE(json::parse(contents(shop / "s.json"))["twin"]["columns"].empty());
+  EXPECT_TRUE(json_in(shop / "s.json")["twin"]["columns"].empty());
   const Outcome nowhere = shop.identify("twin --load 50N trace.csv");
   EXPECT_EQ(nowhere.status, 1);
   EXPECT_THAT(nowhere.err, HasSubstr("--radius"));

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <regex>
 
 #include "command.hpp"
@@ -107,32 +106,13 @@ TEST(Usage, SomeFormatsOfFiguresNeedLibrsvg) {
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("librsvg"), HasSubstr("--format svg")));
 }
 
-TEST(Usage, HelpAndVersion) {
+TEST(Usage, HelpAndVersionAreNoErrors) {
   const Workshop shop;
-  const Outcome help = shop.identify("--help");
-  EXPECT_EQ(help.status, 0);
-  for (const char* option :
-       {"--radius",   "--speed",   "--load",    "--instruments",  "--json",        "--csv",
-        "--columns",  "--units",   "--rate",    "--threads",      "--seed",        "--quiet",
-        "--law",      "--effect",  "--formula", "--protocol",     "--loss",        "--starts",
-        "--folds",    "--profile", "--no-trim", "--never-sticks", "--stick-below", "--with",
-        "--continue", "--version", "simulate",  "effects",        "diagnose",      "Exit status"}) {
-    EXPECT_THAT(help.out, HasSubstr(option));
-  }
-  EXPECT_THAT(help.err, IsEmpty());
-  const Outcome version = shop.identify("--version");
-  EXPECT_EQ(version.status, 0);
-  EXPECT_THAT(version.out, StartsWith("identify "));
-}
-
-TEST(Usage, DiagnoseHasTheOptionsOfIdentify) {
-  const Workshop shop;
-  const Outcome help = shop.identify("diagnose --help");
-  EXPECT_EQ(help.status, 0);
-  for (const char* option :
-       {"--radius", "--speed", "--load", "--instruments", "--json", "--csv", "--columns", "--units", "--rate",
-        "--threads", "--seed", "--quiet", "--law", "--effect", "--formula", "--confirm", "--with", "manifest.csv"}) {
-    EXPECT_THAT(help.out, HasSubstr(option));
+  for (const char* words : {"--help", "diagnose --help", "--version"}) {
+    const Outcome outcome = shop.identify(words);
+    EXPECT_EQ(outcome.status, 0) << words;
+    EXPECT_THAT(outcome.out, Not(IsEmpty())) << words;
+    EXPECT_THAT(outcome.err, IsEmpty()) << words;
   }
 }
 
@@ -160,7 +140,7 @@ TEST(Cite, TellsARunAndItsSources) {
   const Outcome cited = shop.identify("cite '" + result + "'");
   EXPECT_EQ(cited.status, 0);
   const std::string text = std::regex_replace(cited.out, std::regex("\\s+"), " ");  // lines break anywhere
-  const nlohmann::json run = nlohmann::json::parse(contents(result));
+  const nlohmann::json run = json_in(result);
   const nlohmann::json fit = run.at("fits").at(run.at("best").get<std::size_t>());
   for (const auto& parameter : fit.at("parameters")) {
     // Two digits of the standard error are printed: the value is off by a twentieth of it at most.

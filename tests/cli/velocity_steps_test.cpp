@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "command.hpp"
@@ -19,12 +18,9 @@ constexpr const char* kSimulated =
     "simulate --kind velocity-steps --rate 20Hz --duration 140s --speed-steps 0s:2um/s,60s:20um/s,80s:2um/s "
     "--rate-state a=0.01,b=0.014,D_c=10um,k=0.002/um --noise-mu 0.0002 --evolution slip --out steps.csv";
 
-double parameter(const json& result, const std::string& name) {
-  const std::size_t best = result["best"];
-  for (const json& p : result["fits"][best]["parameters"]) {
-    if (p["name"] == name) return p["value"];
-  }
-  return std::nan("");
+/// Of the best fit.
+double best_value(const json& result, const std::string& name) {
+  return parameter(result["fits"][result["best"].get<std::size_t>()], name)["value"];
 }
 
 /// The simulated record in other columns. row: makes a line of time, displacement and friction, as they are written.
@@ -49,13 +45,13 @@ TEST(VelocitySteps, AreSimulatedReadFittedAndReported) {
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("velocity-steps (the motion of a load point was"),
                                  HasSubstr("2 um/s, 20 um/s, 2 um/s"), HasSubstr("Slip law, 2 steps together (best)"),
                                  HasSubstr("k_c = (b - a)/D_c"), HasSubstr("times as stiff")));
-  const json result = json::parse(contents(shop / "j.json"));
+  const json result = json_in(shop / "j.json");
   EXPECT_EQ(result["trace"]["kind"], "velocity-steps");
   EXPECT_EQ(result["fits"][result["best"].get<std::size_t>()]["law"], "rate-state-slip");
-  EXPECT_NEAR(parameter(result, "a"), 0.01, 3e-4);
-  EXPECT_NEAR(parameter(result, "b"), 0.014, 4e-4);
-  EXPECT_NEAR(parameter(result, "D_c"), 10, 0.5);
-  EXPECT_NEAR(parameter(result, "k"), 0.002, 1e-4);
+  EXPECT_NEAR(best_value(result, "a"), 0.01, 3e-4);
+  EXPECT_NEAR(best_value(result, "b"), 0.014, 4e-4);
+  EXPECT_NEAR(best_value(result, "D_c"), 10, 0.5);
+  EXPECT_NEAR(best_value(result, "k"), 0.002, 1e-4);
   EXPECT_EQ(result["rate_state"]["steps"].size(), 2U);
   EXPECT_NEAR(result["rate_state"]["steps"][0]["time_s"].get<double>(), 60, 2e-3);
   EXPECT_THAT(contents(shop / "out/steps.csv"),
@@ -76,11 +72,11 @@ TEST(VelocitySteps, StressesAndStatedSpeedsGiveTheSame) {
       shop.identify("--speed 0s:2um/s,60s:20um/s,80s:2um/s --evolution slip --json j.json stress.csv");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("25 MPa"), HasSubstr("mu is shear stress over the measured normal stress")));
-  EXPECT_NEAR(parameter(json::parse(contents(shop / "j.json")), "D_c"), 10, 0.5);
+  EXPECT_NEAR(best_value(json_in(shop / "j.json"), "D_c"), 10, 0.5);
   const Outcome held = shop.identify(
       "--speed 0s:2um/s,60s:20um/s,80s:2um/s --evolution slip --bounds k=0.002..0.002/um --json j.json stress.csv");
   ASSERT_EQ(held.status, 0) << held.err;
-  EXPECT_NEAR(parameter(json::parse(contents(shop / "j.json")), "k"), 0.002, 1e-12);
+  EXPECT_NEAR(best_value(json_in(shop / "j.json"), "k"), 0.002, 1e-12);
 }
 
 // A drive that takes its time from one speed to the other, and goes back to where it began at the end of the test.
@@ -98,10 +94,10 @@ TEST(VelocitySteps, RampsAreNoStepsAndTheWayBackIsLeftOut) {
   const Outcome outcome = shop.identify("--evolution ageing --detrend displacement --json j.json back.csv");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("load point        2 um/s, 20 um/s, 2 um/s"), HasSubstr("turns round")));
-  const json result = json::parse(contents(shop / "j.json"));
+  const json result = json_in(shop / "j.json");
   EXPECT_EQ(result["rate_state"]["steps"].size(), 2U);
-  EXPECT_NEAR(parameter(result, "a"), 0.01, 3e-4);
-  EXPECT_NEAR(parameter(result, "D_c"), 10, 0.5);
+  EXPECT_NEAR(best_value(result, "a"), 0.01, 3e-4);
+  EXPECT_NEAR(best_value(result, "D_c"), 10, 0.5);
 }
 
 TEST(VelocitySteps, HoldsAreRecognised) {
@@ -114,7 +110,7 @@ TEST(VelocitySteps, HoldsAreRecognised) {
   const Outcome outcome = shop.identify("--json j.json holds.csv");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("slide-hold-slide"), HasSubstr("Healing rate")));
-  const json result = json::parse(contents(shop / "j.json"));
+  const json result = json_in(shop / "j.json");
   ASSERT_EQ(result["rate_state"]["healing"]["holds"].size(), 4U);
   EXPECT_NEAR(result["rate_state"]["healing"]["holds"][3]["hold_s"].get<double>(), 100, 0.1);
   EXPECT_GT(result["rate_state"]["healing"]["per_decade"]["value"].get<double>(), 0.003);
@@ -125,7 +121,7 @@ TEST(VelocitySteps, ValuesAreGivenWithoutTheKind) {
   const Workshop shop;
   ASSERT_EQ(shop.identify(kSimulated).status, 0);
   ASSERT_EQ(shop.identify("--bounds k=0.002..0.002/um --start D_c=20um --json k.json steps.csv").status, 0);
-  const json held = json::parse(contents(shop / "k.json"))["fits"][0]["parameters"].back();
+  const json held = json_in(shop / "k.json")["fits"][0]["parameters"].back();
   EXPECT_EQ(held["name"], "k");
   EXPECT_NEAR(held["value"].get<double>(), 0.002, 1e-12);
   shop.write("sliding.csv", [] {
@@ -157,10 +153,10 @@ TEST(VelocitySteps, FrictionInNewtonsHasParametersInNewtons) {
   const Outcome outcome = shop.identify("--json j.json --bounds k=0.1..0.1N/um newtons.csv");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("N/um"));
-  const json result = json::parse(contents(shop / "j.json"));
-  EXPECT_NEAR(parameter(result, "a"), 50 * 0.01, 50 * 3e-4);
-  EXPECT_DOUBLE_EQ(parameter(result, "k"), 0.1);
-  EXPECT_EQ(result["fits"][0]["parameters"][0]["unit"], "N");
+  const json result = json_in(shop / "j.json");
+  EXPECT_NEAR(best_value(result, "a"), 50 * 0.01, 50 * 3e-4);
+  EXPECT_DOUBLE_EQ(best_value(result, "k"), 0.1);
+  EXPECT_EQ(parameter(result["fits"][0], "a")["unit"], "N");
   const Outcome refused = shop.identify("--bounds k=0.1..0.1N/um steps.csv");
   EXPECT_EQ(refused.status, 3);
   EXPECT_THAT(refused.err, HasSubstr("friction is a coefficient"));
