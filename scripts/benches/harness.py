@@ -32,7 +32,6 @@ def used(command, **more):
 
 
 def median(runs):
-    """Of several runs of one command."""
     return Used(*(statistics.median(getattr(run, name) for run in runs) for name in ("wall", "processor", "memory")),
                 runs[-1].status, runs[-1].text)
 
@@ -53,17 +52,13 @@ def record(identify, file, duration="20s", rate="20kHz", options=(*CONDITIONS, *
 def copies(trace, folder, names, lines_less=1):
     """Copies that end earlier and earlier: one that holds the same values as another would count once."""
     os.mkdir(folder)
-    with open(trace, encoding="utf-8") as file:
-        lines = file.read().splitlines(keepends=True)
+    lines = pathlib.Path(trace).read_text(encoding="utf-8").splitlines(keepends=True)
     for k, name in enumerate(names):
-        with open(os.path.join(folder, name), "w", encoding="utf-8") as out:
-            out.writelines(lines[: len(lines) - lines_less * k])
+        pathlib.Path(folder, name).write_text("".join(lines[: len(lines) - lines_less * k]), encoding="utf-8")
 
 
 def files_of(folder):
-    """Every file of a folder and the folders in it, by its name there, with its bytes."""
-    return {os.path.relpath(os.path.join(path, name), folder): pathlib.Path(path, name).read_bytes()
-            for path, _, names in os.walk(folder) for name in names}
+    return {str(path.relative_to(folder)): path.read_bytes() for path in pathlib.Path(folder).rglob("*") if path.is_file()}
 
 
 def print_machine(given):
@@ -146,5 +141,5 @@ class Workbench:
         return 1e3 * (time.monotonic() - begin)
 
     def megabytes(self):
-        with open(f"/proc/{self.server.pid}/status", encoding="utf-8") as status:
-            return int(re.search(r"VmRSS:\s+(\d+)", status.read())[1]) / 1024
+        status = pathlib.Path(f"/proc/{self.server.pid}/status").read_text(encoding="utf-8")
+        return int(re.search(r"VmRSS:\s+(\d+)", status)[1]) / 1024
