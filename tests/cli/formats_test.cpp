@@ -96,7 +96,7 @@ TEST(FormatsOfFiles, DamagedOnesAreRefusedWithAPlace) {
   shop.write("c.mat", whole.substr(0, whole.size() / 2));
   const Outcome outcome = shop.identify("--radius 15mm c.mat");
   EXPECT_EQ(outcome.status, 3);
-  EXPECT_THAT(outcome.err, HasSubstr("is cut off at byte"));
+  EXPECT_THAT(outcome.err, HasSubstr("cannot be read; the file is damaged"));
 }
 
 TEST(FormatsOfFiles, ColumnsOfTheSecondFileNeedOne) {
