@@ -11,11 +11,11 @@
 namespace tribofit {
 namespace {
 
-const std::string kPublished(to_string(Protocol::published));
+const std::string kExtremes(to_string(Protocol::published));
 
 /// The protocol as people call it; JSON and CSV have its own name.
 std::string protocol_cell(const std::string& protocol) {
-  return protocol == kPublished ? "extremes" : protocol;
+  return protocol == kExtremes ? "extremes" : protocol;
 }
 
 /// What the first columns of a row have in common with the row above is said once.
@@ -59,8 +59,8 @@ ReportSection comparison_section(const EarlierComparison& comparison, std::span<
   table.numbers({"extremes", "difference"});
   const ComparedValue* before = nullptr;
   for (const ComparedValue& v : comparison.values) {
-    const bool extremes = v.protocol == kPublished;
-    if (!extremes || before == nullptr || before->protocol == kPublished || !v.is_beside_same(*before)) {
+    const bool extremes = v.protocol == kExtremes;
+    if (!extremes || before == nullptr || before->protocol == kExtremes || !v.is_beside_same(*before)) {
       table.rows.push_back({conditions_text(groups[v.group]), with_unit(v.earlier.name, v.ours.unit), v.law,
                             with_error(v.earlier.value, v.earlier.std_error), "", "", "", "", ""});
     }
@@ -259,7 +259,7 @@ ReportTable repeats_table(std::span<const PooledGroup> groups, bool joint_alone)
       }
     };
     for (const PooledGroup::OfFit& fit : group.fits) {
-      if (!joint_alone || fit.protocol != kPublished) add(fit.parameters, fit.law, fit.protocol);
+      if (!joint_alone || fit.protocol != kExtremes) add(fit.parameters, fit.law, fit.protocol);
     }
     if (!joint_alone) add(group.measures, "", "");
   }
