@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include "limits.hpp"
@@ -15,35 +14,34 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// How far some samples, spread over the channel, are off the cubic through two neighbours on either side, which
-/// follows the motion; not of samples that repeat, as an encoder does at rest.
+/// Of some samples, spread over the channel; not of those that repeat, as an encoder does at rest.
 std::vector<double> innovations_of(std::span<const double> x) {
-  std::vector<double> off;
+  std::vector<double> all;
   const std::size_t stride = std::max<std::size_t>(1, x.size() / kThinned);
   for (std::size_t i = 2; i + 2 < x.size(); i += stride) {
-    const double distance = std::abs(x[i] - (4 * (x[i - 1] + x[i + 1]) - (x[i - 2] + x[i + 2])) / 6);
-    if (x[i] != x[i - 1]) off.push_back(distance);
+    if (x[i] != x[i - 1]) all.push_back(innovation(x, i));
   }
-  return off;
+  return all;
 }
 
-/// What innovations reach by chance once in a thousand records of so many samples. Two quantiles that faults of less
-/// than a hundredth do not move give the degrees of freedom of their t distribution.
+/// What innovations reach by chance once in a thousand records of so many samples, or kMostReach. Two quantiles that
+/// outliers do not move, if fewer than one in a hundred samples is one, give the degrees of freedom of their t.
 double reach_of(std::vector<double> innovations, std::size_t samples) {
   if (innovations.size() < kFewestDistributed) return kInfinity;
   using boost::math::complement, boost::math::quantile, boost::math::students_t;
-  const double often = tribofit::quantile(innovations, 0.9), seldom = tribofit::quantile(std::move(innovations), 0.99);
+  const double half = median(innovations), quantile_95 = tribofit::quantile(std::move(innovations), 0.95);
   const auto ratio = [](double freedom) {
-    return quantile(students_t(freedom), 0.995) / quantile(students_t(freedom), 0.95);
+    return quantile(students_t(freedom), 0.975) / quantile(students_t(freedom), 0.75);
   };
   double low = kHeaviestTail, high = kNormalTail;
   for (int k = 0; k < kBitsOfSearch; ++k) {
     const double middle = std::sqrt(low * high);
-    (ratio(middle) > seldom / often ? low : high) = middle;
+    (ratio(middle) > quantile_95 / half ? low : high) = middle;
   }
   const students_t tails(low);
   const double chance = 1e-3 / static_cast<double>(samples);
-  return std::min(seldom / quantile(tails, 0.995) * quantile(complement(tails, 0.5 * chance)), kMostReach * often);
+  const double reach = quantile_95 / quantile(tails, 0.975) * quantile(complement(tails, 0.5 * chance));
+  return std::min(reach, kMostReach * quantile_95);
 }
 
 /// Stretches of at least so many equal samples.
@@ -65,7 +63,7 @@ bool moves_between(const ChannelSamples& channel, std::size_t first, std::size_t
 }
 
 /// Stretches that the channel enters by a jump beyond its innovations and leaves by another, to go on where it was
-/// within few samples; or in which it holds a value far beyond all others.
+/// within few samples; or in which it is far beyond all others, at one value or for few samples.
 std::vector<SampleSpan> find_outliers(const ChannelSamples& channel, const ChannelSamples& beside) {
   const std::span<const double> x = channel.x;
   const double far = std::max({channel.reach, kLeastOutlier * channel.range(), kStepsOfOutlier * channel.step});
@@ -74,26 +72,44 @@ std::vector<SampleSpan> find_outliers(const ChannelSamples& channel, const Chann
   if (!(channel.range() > 0)) return outliers;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const bool is_marker = channel.is_beyond(x[i]);
-    if (!(i == 0 ? is_marker : change(i) > far)) continue;
-    std::size_t end = i + 1;
+    if (!is_marker && (i == 0 || !(change(i) > far))) continue;
+    std::size_t end = i + 1, equal = 1;
     if (is_marker) {
-      while (end < x.size() && x[end] == x[i]) ++end;
-      const bool comes_back = end == x.size() || !channel.is_beyond(x[end]);
-      if ((i == 0 || !channel.is_beyond(x[i - 1])) && comes_back) outliers.push_back({i, end});
-      if (comes_back) i = end;
-      continue;
+      for (; end < x.size() && channel.is_beyond(x[end]); ++end) equal += x[end] == x[i] ? 1U : 0U;
+    } else {
+      while (end < x.size() && end <= i + kWidestOutlier && change(end) < kQuietBeside * change(i)) ++end;
     }
-    const double jump = change(i);
-    const std::size_t last = std::min(x.size(), i + kWidestOutlier);
-    while (end < last && change(end) < kQuietBeside * jump) ++end;
-    const bool was_quiet = i == 1 || change(i - 1) < kQuietBeside * jump || end == i + 1;
-    const bool returns = end < last && std::abs(x[end] - x[i - 1]) < kQuietBeside * jump;
-    if (!returns || !was_quiet || moves_between(beside, i - std::min<std::size_t>(i, 2), std::min(x.size(), end + 2)))
-      continue;
-    outliers.push_back({i, end});
-    i = end;
+    const bool repeats = is_marker && equal == end - i, is_short = end - i <= kWidestOutlier && end < x.size();
+    const bool was_quiet = is_marker || i == 1 || change(i - 1) < kQuietBeside * change(i) || end == i + 1;
+    const bool returns = is_marker || (is_short && std::abs(x[end] - x[i - 1]) < kQuietBeside * change(i));
+    const std::size_t before = i - std::min<std::size_t>(i, 2), after = std::min(x.size(), end + 2);
+    if (repeats || (is_short && was_quiet && returns && !moves_between(beside, before, after))) {
+      outliers.push_back({i, end});
+      i = end;
+    } else if (is_marker) {
+      i = end;
+    }
   }
   return outliers;
+}
+
+/// Whether the channel turns again and again outside of these runs, and hardly repeats a value there: it has noise and
+/// fine steps, so that a run of one value cannot be its own.
+bool is_never_still(std::span<const double> x, const std::vector<SampleSpan>& runs) {
+  std::size_t looked_at = 0, equal = 0, turns = 0, next = 0;
+  for (std::size_t i = 1; i + 1 < x.size(); ++i) {
+    while (next < runs.size() && runs[next].end < i) ++next;
+    if (next < runs.size() && i + 1 >= runs[next].begin) {
+      i = runs[next].end;
+      continue;
+    }
+    ++looked_at;
+    equal += x[i] == x[i - 1] ? 1U : 0U;
+    turns += (x[i] - x[i - 1]) * (x[i + 1] - x[i]) < 0 ? 1U : 0U;
+  }
+  const auto n = static_cast<double>(looked_at);
+  return looked_at >= kFewestDistributed &&
+         static_cast<double>(equal)<kFewRepeats * n&& static_cast<double>(turns)> kManyTurns * n;
 }
 
 /// Whether a velocity that reads zero was zero. A plug that was loose takes a speed away within a sample, and perhaps
@@ -144,29 +160,31 @@ void find_outliers_and_held(ChannelSamples& channel, const ChannelSamples& besid
   const std::span<const double> x = channel.x;
   if (x.size() < kFewestDistributed) return;
   channel.outliers = find_outliers(channel, beside);
-  std::vector<SampleSpan> runs = runs_of_one_value(x, longest_by_chance(kRepeatsOfSteps, x.size()));
-  const std::size_t in_runs = samples_in(runs);
-  const auto others = static_cast<double>(x.size() - in_runs);
-  const double equal = channel.repeats * static_cast<double>(x.size()) - static_cast<double>(in_runs);
-  if (others < kFewestDistributed || !channel.is_noisy || equal > kFewRepeats * others) return;
-  const auto rests_in = [&](const SampleSpan& run) { return rests_at_zero && is_rest(channel, beside, run); };
-  const bool rests = std::ranges::any_of(runs, rests_in);
-  // A limit of the range is no frozen channel, however often it is reached. A drive that rests begins and ends so.
+  const std::vector<SampleSpan> runs = runs_of_one_value(x, longest_by_chance(kRepeatsOfSteps, x.size()));
+  if (!is_never_still(x, runs)) return;
   const Extremes range = extremes(x);
-  std::erase_if(runs, [&](const SampleSpan& run) {
+  bool rests = false;
+  auto outlier = channel.outliers.begin();
+  for (const SampleSpan& run : runs) {
+    while (outlier != channel.outliers.end() && outlier->end <= run.begin) ++outlier;
+    const bool is_outlier = outlier != channel.outliers.end() && outlier->begin < run.end;
+    // A limit of the range is no frozen channel, however often it is reached.
     const double value = x[run.begin];
-    const bool at_limit = value != 0 && (value == range.low || value == range.high);
-    const bool at_end = value == 0 && (run.begin == 0 || run.end == x.size());
-    const bool is_marker = std::ranges::find(channel.outliers, run.begin, &SampleSpan::begin) != channel.outliers.end();
-    return at_limit || is_marker || rests_in(run) || (rests && at_end);
+    if (is_outlier || (value != 0 && (value == range.low || value == range.high))) continue;
+    const bool is_resting = rests_at_zero && is_rest(channel, beside, run);
+    rests |= is_resting;
+    if (!is_resting) channel.held.push_back(run);
+  }
+  // A drive that rests begins and ends so.
+  std::erase_if(channel.held, [&](const SampleSpan& run) {
+    return rests && x[run.begin] == 0 && (run.begin == 0 || run.end == x.size());
   });
-  channel.held = std::move(runs);
 }
 
 std::size_t longest_by_chance(double repeats, std::size_t samples) {
   const auto n = static_cast<double>(samples);
-  const double part = std::clamp(repeats, 1 / n, 1 - 1 / n);
-  return std::max<std::size_t>(kShortestRun, 1 + static_cast<std::size_t>(std::log(1e-3 / n) / std::log(part)));
+  const double fraction = std::clamp(repeats, 1 / n, 1 - 1 / n);
+  return std::max(kShortestRun, 1 + static_cast<std::size_t>(std::ceil(std::log(1e-3 / n) / std::log(fraction))));
 }
 
 std::size_t samples_in(const std::vector<SampleSpan>& spans) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -36,7 +37,7 @@ struct ChannelSamples {
   double repeats = 0;                ///< part of the samples, but for the ends of the range, that equal the one before
   bool is_noisy = false;             ///< it turns again and again, so that there is noise above its steps
   std::vector<SampleSpan> outliers;  ///< left and entered by jumps: markers, spikes, a laser without its reflection
-  std::vector<SampleSpan> held;      ///< one value for longer than the channel can repeat one: a plug that is loose
+  std::vector<SampleSpan> held;      ///< one value for longer than a coarse converter repeats one: a plug that is loose
   std::array<RangeEnd, 2> ends;      ///< lower and upper; found by find_ends()
 
   ChannelSamples() = default;
@@ -47,6 +48,12 @@ struct ChannelSamples {
   /// Whether a value is far beyond all others: no channel of a machine goes there within a sample.
   bool is_beyond(double value) const;
 };
+
+/// How far a sample is off the cubic through two neighbours on either side, which follows the motion. 2 <= i < size
+/// - 2.
+inline double innovation(std::span<const double> x, std::size_t i) {
+  return std::abs(x[i] - (4 * (x[i - 1] + x[i + 1]) - (x[i - 2] + x[i + 2])) / 6);
+}
 
 /// Fills outliers and held. `beside`: the other channel of the machine. Where that moves too, a jump there and back is
 /// a slip of few samples. rests_at_zero: a velocity that reads exactly zero at rest, as an encoder does.

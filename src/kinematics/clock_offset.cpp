@@ -11,8 +11,8 @@
 
 #include "clock_scan.hpp"
 #include "force_balance.hpp"
-#include "ingest/recording.hpp"
 #include "ingest/limits.hpp"
+#include "ingest/recording.hpp"
 #include "limits.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/ingest/input_error.hpp"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "limits.hpp"
+#include "resolution.hpp"
 #include "smoothing.hpp"
 #include "statistics/derivatives.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -30,6 +31,24 @@ double frequency_of(const std::vector<double>& position, double step) {
   std::vector<double> mirrored = position;
   for (double& x : mirrored) x = -x;
   return frequency_of_falls(mirrored, step);
+}
+
+/// Samples to either side for the slope of a position, as they predict it best about where it is fastest; as many at
+/// least as pass some levels of a converter there.
+std::size_t window_of_slope(std::span<const double> position, double step) {
+  const std::size_t widest = std::min(kWidestHalf, position.size() / 20);
+  std::size_t fastest = 0;
+  double most = 0;
+  for (std::size_t i = 0; i + kShortestHalf < position.size(); ++i) {
+    const double change = std::abs(position[i + kShortestHalf] - position[i]);
+    if (change > most) most = change, fastest = i;
+  }
+  const std::size_t some = std::min(position.size(), kThinned);
+  const std::size_t from = std::min(fastest - std::min(fastest, some / 2), position.size() - some);
+  const double levels = static_cast<double>(kFewestLevels * kShortestHalf) * find_resolution(position) / most;
+  const std::size_t narrowest =
+      std::clamp(levels > 0 ? static_cast<std::size_t>(levels) : 0, kShortestHalf, std::max(kShortestHalf, widest));
+  return window_by_prediction(position.subspan(from, some), step, narrowest, widest);
 }
 
 std::size_t clean(std::vector<double>& position, const char* name, std::vector<std::string>& notes) {
@@ -208,9 +227,7 @@ void make_velocity_of_displacement(Trace& trace, std::vector<std::string>& notes
   std::vector<double>& leading = block ? trace.block_position : trace.drive_position;
   clean(trace.block_position, "x_b", notes);
   clean(trace.drive_position, "x_d", notes);
-  const std::size_t some = std::min(trace.size(), kThinned), from = (trace.size() - some) / 2;
-  const std::size_t half = window_by_prediction(std::span(leading).subspan(from, some), step, kShortestHalf,
-                                                std::min(kWidestHalf, trace.size() / 20));
+  const std::size_t half = window_of_slope(leading, step);
   const LocalDerivatives b = block ? local_derivatives(trace.block_position, step, half) : at_rest(trace.size());
   const LocalDerivatives d = drive ? local_derivatives(trace.drive_position, step, half) : at_rest(trace.size());
   trace.velocity = b.slope;

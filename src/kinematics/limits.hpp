@@ -326,9 +326,11 @@ inline constexpr std::size_t kFewestDistributed = 64, kThinned = 16384;
 /// Degrees of freedom of innovations: the noise of a laser has three, and from the second on it is as good as normal.
 inline constexpr double kHeaviestTail = 3, kNormalTail = 200;
 /// How far a jump to an outlier must go at least, over the range of the channel, and in steps of a converter: nearer
-/// ones are as likely noise, and leaving those out would bias the noise floor. And the most that innovations reach, over
-/// what one in ten exceeds: t of three degrees does so once in a hundred thousand; the kinks of a slip are less.
-inline constexpr double kLeastOutlier = 0.01, kStepsOfOutlier = 2.5, kMostReach = 30;
+/// ones are as likely noise, and leaving those out would bias the noise floor.
+inline constexpr double kLeastOutlier = 0.01, kStepsOfOutlier = 2.5;
+/// The most that innovations reach, over what one in twenty exceeds: t of three degrees goes there once in 200,000
+/// samples; corners of slips, which are no noise, do not make it larger.
+inline constexpr double kMostReach = 22;
 /// How far a marker lies beyond the range of all but two values in a thousand, over that range: no channel of a machine
 /// leaves its range so far within a sample.
 inline constexpr double kMarkerReach = 3;
@@ -363,8 +365,8 @@ inline constexpr std::size_t kClipBins = 4096, kNarrowestRange = 16;
 /// Density of samples at the limit over that beside it. A turning point (a parabola) has 3 over any width, a peak 1:
 /// the first needs quiet (noise over that elsewhere), the second, of a block that sticks and slips, does not.
 inline constexpr double kDenseQuiet = 2, kDenseAlone = 6, kQuiet = 0.7;
-/// Of its usual rise over the way of the block, by which friction at a limit goes on; standard errors below it; change
-/// of that way, with which the block still rests.
+/// Of its usual rise over the way of the block, by which friction at a limit goes on; standard errors of a mean below
+/// it; change of that way, with which the block still rests.
 inline constexpr double kStillRises = 0.5, kClippedErrors = 4, kCarriedOn = 0.02;
 /// Samples at a limit: fewer do not bear on a fit; samples between two at it that are taken for clipped too (noise
 /// brings them below it), and beside a stretch.

@@ -31,7 +31,7 @@ void MotionStages::undo_distortions() {
   undo_zero();
   if (search_.sticks && !samples_->velocity_repeats()) samples_->find_lost(trace_, search_, disc_);
   // What was lost of slips is missing in the way of the block.
-  if (!samples_->lost().any(search_.plateaus.runs.size())) undo_compression();
+  if (!samples_->lost().are_significant(search_.plateaus.runs.size())) undo_compression();
   undo_low_pass();
   undo_clock_drift();
   find_friction_filter();

@@ -26,7 +26,7 @@ template <class Value>
 DenseEnd densest_near(std::size_t n, Value&& value, const Extremes& range, bool upper, bool noisy) {
   DenseEnd best;
   if (!(range.high > range.low)) return best;
-  constexpr std::size_t kLooked = kClipBins / kNarrowestRange;  // the widest; four such are counted
+  constexpr std::size_t kLooked = kClipBins / kNarrowestRange;  // the widest; five such are counted
   std::vector<std::size_t> counts(5 * kLooked, 0);              // from the end inwards
   const double bin = (range.high - range.low) / static_cast<double>(kClipBins);
   for (std::size_t i = 0; i < n; ++i) {
@@ -71,42 +71,48 @@ std::vector<SampleSpan> spans_between(std::span<const double> x, double from, do
   return spans;
 }
 
-/// Median innovation within stretches over that of the channel; 1 where there are too few.
+/// Median innovation within stretches over that of the channel where it does not repeat; 1 where there are too few.
 double noise_over(std::span<const double> x, const std::vector<SampleSpan>& stretches) {
-  const auto off = [&](std::size_t i) { return std::abs(x[i] - 0.5 * (x[i - 1] + x[i + 1])); };
   std::vector<double> inside, all;
   for (const SampleSpan& stretch : stretches) {
-    for (std::size_t i = stretch.begin + 1; i + 1 < stretch.end; ++i) inside.push_back(off(i));
+    for (std::size_t i = stretch.begin + 2; i + 2 < stretch.end; ++i) inside.push_back(innovation(x, i));
   }
-  for (std::size_t i = 1; i + 1 < x.size(); i += std::max<std::size_t>(1, x.size() / kThinned)) all.push_back(off(i));
+  for (std::size_t i = 2; i + 2 < x.size(); i += std::max<std::size_t>(1, x.size() / kThinned)) {
+    if (x[i] != x[i - 1]) all.push_back(innovation(x, i));
+  }
   if (inside.size() < kFewestSamples || all.size() < kFewestSamples) return 1;
   return median(std::move(inside)) / median(std::move(all));
 }
 
-/// Runs at the very end of the range that are no turn: a turn stays some times as long in its last step as in the one
-/// before, a limit far longer. Nothing of a channel of few levels, each of which repeats.
-RangeEnd runs_at(const ChannelSamples& channel, double limit) {
-  RangeEnd end{limit, 0, true, {}};
-  const std::span<const double> x = channel.x;
+/// Distance of the nearest other value from an end of the range; 0 where the channel has few levels, each of which
+/// repeats.
+double step_beside(const ChannelSamples& channel, double limit) {
   double step = std::numeric_limits<double>::infinity(), widest = 0;
-  for (const double value : x) {
+  for (const double value : channel.x) {
     if (value == limit) continue;
     step = std::min(step, std::abs(value - limit));
     widest = std::max(widest, std::abs(value - limit));
   }
-  if (widest < static_cast<double>(kFewestLevels) * step) return end;
-  std::size_t beside = 0, run = 0;
+  return widest < static_cast<double>(kFewestLevels) * step ? 0 : step;
+}
+
+/// Runs at the very end of the range that are no turn: a turn stays some times as long in its last step as in the one
+/// before, a limit far longer.
+RangeEnd runs_at(const ChannelSamples& channel, double limit, double step) {
+  const std::span<const double> x = channel.x;
   const std::size_t least = longest_by_chance(channel.repeats, x.size());
+  std::size_t beside = 0, run = 0, in_runs = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     beside += x[i] != limit && std::abs(x[i] - limit) < 1.5 * step ? 1U : 0U;
     run = x[i] == limit ? run + 1 : 0;
-    if (run == least) end.spans.push_back({i + 1 - least, i + 1});
-    if (run > least) end.spans.back().end = i + 1;
+    in_runs += run == least ? least : run > least ? 1U : 0U;
   }
-  end.count = samples_in(end.spans);
-  if (end.count < 2 * kShortestRun || static_cast<double>(end.count) < kStepsOfATurn * static_cast<double>(beside))
-    return {limit, 0, false, {}};
+  RangeEnd end{limit, 0, false, {}};
+  if (in_runs < 2 * kShortestRun || static_cast<double>(in_runs) < kStepsOfATurn * static_cast<double>(beside))
+    return end;
   end.spans = spans_between(x, limit, limit);
+  end.count = samples_in(end.spans);
+  end.is_quiet = true;
   return end;
 }
 
@@ -119,15 +125,17 @@ void find_ends(ChannelSamples& channel, bool gathers) {
     RangeEnd& end = channel.ends[k];
     end.level = k == 0 ? range.low : range.high;
     if (x.size() < kFewestSamples || range.low == range.high || channel.repeats > kRepeatsOfSteps) continue;
-    end = runs_at(channel, end.level);
+    const double step = step_beside(channel, end.level);
+    if (step == 0) continue;
+    end = runs_at(channel, end.level, step);
     if (end.count > 0 || !channel.is_noisy || x.size() < kFewestDistributed) continue;
     const DenseEnd dense = densest_near(
         x.size(), [&](std::size_t i) { return x[i]; }, range, k == 1, true);
     if (dense.density < kDenseQuiet) continue;
     std::vector<SampleSpan> spans = spans_between(x, dense.from, dense.to);
     const bool is_quiet = noise_over(x, spans) < kQuiet;
-    if (!is_quiet && !(gathers && dense.density >= kDenseAlone)) continue;
-    end = {dense.level, dense.count, is_quiet, std::move(spans)};
+    if (is_quiet || (gathers && dense.density >= kDenseAlone))
+      end = {dense.level, samples_in(spans), is_quiet, std::move(spans)};
   }
 }
 
@@ -162,11 +170,11 @@ StraightLine rise_of(std::span<const double> friction, std::span<const double> v
 }
 
 /// The first samples, from some on, over which the block is behind the disc by this part of what it was there.
-std::size_t falls_behind(std::span<const double> velocity, std::size_t from, double part) {
+std::size_t falls_behind(std::span<const double> velocity, std::size_t from, double fraction) {
   const double usual = mean_of(velocity.subspan(from, kShortestStretch));
   std::size_t i = from + kShortestStretch;
   while (i + kShortestStretch <= velocity.size() &&
-         std::abs(mean_of(velocity.subspan(i, kShortestStretch)) - usual) < part * std::abs(usual))
+         std::abs(mean_of(velocity.subspan(i, kShortestStretch)) - usual) < fraction * std::abs(usual))
     i += kShortestStretch / 4;
   return std::min(i + kShortestStretch / 2, velocity.size());
 }
@@ -175,6 +183,7 @@ std::size_t falls_behind(std::span<const double> velocity, std::size_t from, dou
 /// time at first, over twice as long to four times as much.
 SampleSpan without_slip(std::span<const double> velocity, SampleSpan stretch) {
   if (stretch.begin + kShortestStretch > velocity.size()) return stretch;
+  velocity = velocity.first(std::min(velocity.size(), stretch.end + 2 * stretch.size() + kShortestStretch));
   const std::size_t little = falls_behind(velocity, stretch.begin, kCarriedOn),
                     more = falls_behind(velocity, stretch.begin, 4 * kCarriedOn);
   const std::size_t cut = std::min(little, 2 * (more - little));

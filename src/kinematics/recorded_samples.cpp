@@ -6,11 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "ingest/limits.hpp"
 #include "limits.hpp"
 #include "resolution.hpp"
 #include "tribofit/execution/parallel.hpp"
-#include "tribofit/kinematics/motion.hpp"
 #include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -82,7 +80,7 @@ bool is_rest(const RangeEnd& end, double range, const std::optional<LevelRange>&
 
 }  // namespace
 
-bool LostSamples::any(std::size_t plateaus) const {
+bool LostSamples::are_significant(std::size_t plateaus) const {
   return jumps >= kFewestJumps && static_cast<double>(jumps) > kJumpsPerPlateau * static_cast<double>(plateaus);
 }
 
@@ -127,7 +125,7 @@ RecordedSamples::RecordedSamples(Trace& trace, int threads) : size_(trace.size()
   });
 }
 
-void RecordedSamples::leave_out(std::vector<double>& channel, const ChannelSamples& found, const char* name,
+void RecordedSamples::leave_out(std::vector<double>& channel, ChannelSamples& found, const char* name,
                                 std::uint8_t kind) {
   const bool is_velocity = kind == SampleFault::velocity;
   const std::size_t outliers = samples_in(found.outliers), held = samples_in(found.held);
@@ -142,7 +140,6 @@ void RecordedSamples::leave_out(std::vector<double>& channel, const ChannelSampl
     sentences_.push_back(fmt::format("{} repeats one value in {} ({} % of the record, left out)", name,
                                      counted(found.held.size(), "stretch", "es"), general(percent(held, size_), 3)));
   }
-  left_out_ += outliers + held;
   for (const auto* spans : {&found.outliers, &found.held}) {
     bridge(*spans, channel);
     mark(*spans, kind);
@@ -150,13 +147,15 @@ void RecordedSamples::leave_out(std::vector<double>& channel, const ChannelSampl
       if (span.size() >= kShortestStretch) mark({span}, SampleFault::stretch);
     }
   }
+  if (outliers + held > 0) found = ChannelSamples(channel);
+  left_out_ = static_cast<std::size_t>(std::ranges::count_if(faults_, [](std::uint8_t fault) { return fault != 0; }));
 }
 
-void RecordedSamples::mark(const std::vector<SampleSpan>& spans, int kinds) {
+void RecordedSamples::mark(const std::vector<SampleSpan>& spans, std::uint8_t kinds) {
   if (spans.empty()) return;
   if (faults_.empty()) faults_.assign(size_, 0);
   for (const SampleSpan& span : spans) {
-    for (std::size_t i = span.begin; i < span.end; ++i) faults_[i] |= static_cast<std::uint8_t>(kinds);
+    for (std::size_t i = span.begin; i < span.end; ++i) faults_[i] |= kinds;
   }
 }
 
@@ -207,7 +206,7 @@ void RecordedSamples::find_lost(const Trace& trace, const PlateauSearch& search,
   const double usual = kUsualJump * static_cast<double>(search.plateaus.runs.size());
   lost_.jumps = others;
   for (const std::size_t jumps : {from_rest, to_rest}) lost_.jumps += static_cast<double>(jumps) > usual ? 0 : jumps;
-  if (looked_at > 0) lost_.part = std::min(1.0, static_cast<double>(lost_.jumps) / static_cast<double>(looked_at));
+  if (looked_at > 0) lost_.fraction = std::min(1.0, static_cast<double>(lost_.jumps) / static_cast<double>(looked_at));
 }
 
 bool RecordedSamples::clips_slips(const Plateaus& plateaus) const {
@@ -284,11 +283,11 @@ HealthItem RecordedSamples::check_drop_outs(const Trace& trace, std::size_t plat
   }
   for (const std::string& sentence : sentences_)
     add_finding(percent(left_out_, size_) > 100 * kMuchFrozen ? Status::problem : Status::warning, sentence, item);
-  if (lost_.any(plateaus)) {
+  if (lost_.are_significant(plateaus)) {
     add_finding(Status::problem,
                 fmt::format("the velocity jumps {} times without a gap in time ({} % of the fast intervals): samples "
                             "were lost and the time column was regenerated; the frequency and all times are unreliable",
-                            lost_.jumps, general(100 * lost_.part, 3)),
+                            lost_.jumps, general(100 * lost_.fraction, 3)),
                 item);
   }
   return item;

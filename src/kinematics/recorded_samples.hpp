@@ -5,13 +5,14 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "channel_samples.hpp"
 #include "plateau_search.hpp"
 #include "tribofit/ingest/instruments.hpp"
 #include "tribofit/ingest/trace.hpp"
-#include "tribofit/kinematics/health.hpp"
+#include "tribofit/kinematics/motion.hpp"
 
 namespace tribofit::kinematics {
 
@@ -25,9 +26,9 @@ struct Resting {
 /// its innovations reach and than before and after, where no real motion jumps.
 struct LostSamples {
   std::size_t jumps = 0;
-  double part = 0;  ///< of the intervals in which the velocity changes fast enough to show it
+  double fraction = 0;  ///< of the intervals in which the velocity changes fast enough to show it
   /// Too many for blows on the rig. plateaus: of stick.
-  bool any(std::size_t plateaus) const;
+  bool are_significant(std::size_t plateaus) const;
 };
 
 /// What the recorder did to the channels of a trace, and which samples are not used for it.
@@ -37,9 +38,9 @@ class RecordedSamples {
   RecordedSamples(Trace& trace, int threads);
 
   /// Samples whose velocity is hardly known, or is smeared by a correction; they keep their values.
-  void add_unsure(const std::vector<SampleSpan>& spans) { mark(spans, 2); }
+  void add_unsure(const std::vector<SampleSpan>& spans) { mark(spans, SampleFault::velocity); }
   /// A stretch in which the motion is not known.
-  void add_unknown(const SampleSpan& span) { mark({span}, 7); }
+  void add_unknown(const SampleSpan& span) { mark({span}, SampleFault::any); }
   /// A machine that stands still before, after or while it stick-slips. `plateau`: where v_b rests in stick [m/s].
   void add_standstill(const PlateauSearch& search, double plateau, const Trace& trace);
   /// Jumps from rest, or to it, are the rig's own where most sticks have one. Cost: one pass.
@@ -65,11 +66,11 @@ class RecordedSamples {
   std::vector<std::uint8_t> take() { return std::move(faults_); }  ///< as Motion::faults, of the trace's samples
 
  private:
-  void leave_out(std::vector<double>& channel, const ChannelSamples& found, const char* name, std::uint8_t kind);
-  void mark(const std::vector<SampleSpan>& spans, int kinds);
+  void leave_out(std::vector<double>& channel, ChannelSamples& found, const char* name, std::uint8_t kind);
+  void mark(const std::vector<SampleSpan>& spans, std::uint8_t kinds);
 
   std::size_t size_, left_out_ = 0;
-  ChannelSamples friction_, velocity_;  ///< of the trace's channels, which stay where they are until a stage moves them
+  ChannelSamples friction_, velocity_;            ///< as recorded; their samples are not read after construction
   double friction_slew_ = 0, velocity_slew_ = 0;  ///< in a sample
   Extremes friction_range_, velocity_range_;
   bool friction_repeats_ = false, velocity_repeats_ = false;

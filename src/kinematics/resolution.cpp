@@ -1,17 +1,12 @@
 #include "resolution.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <string>
 #include <vector>
 
 #include "limits.hpp"
 #include "statistics/reductions.hpp"
-#include "tribofit/kinematics/health.hpp"
-#include "tribofit/output/digits.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::kinematics {

@@ -278,24 +278,37 @@ TEST(Recorders, DwellsOfADriveAreNoFault) {
   }
 }
 
-/// A display that shows 64 or 65 rpm.
-TEST(Recorders, AQuantisedSpeedIsNotCutOff) {
+/// A speed of two values is not cut off at the upper one.
+TEST(Recorders, ASpeedOfTwoValuesIsNotCutOff) {
   std::mt19937_64 random(4);
   std::normal_distribution<double> noise;
   Trace trace;
-  trace.velocity_kind = VelocityKind::fixed_block;
-  trace.conditions.radius = {0.015, "file"};
+  trace.velocity_kind = VelocityKind::relative;
   double speed = 64.9;
   for (std::size_t i = 0; i < 6000; ++i) {
     speed += 0.1 * (64.9 - speed) + 0.1 * noise(random);
     trace.time.push_back(0.1 * static_cast<double>(i));
-    trace.disc_speed.push_back(std::clamp(std::round(speed), 64.0, 65.0) * 2 * std::numbers::pi / 60);
+    trace.velocity.push_back(std::clamp(std::round(speed), 64.0, 65.0) * 1e-3);
     trace.friction.push_back(0.4 + 0.01 * noise(random));
   }
   trace.steps = {{0, trace.size(), "", trace.conditions}};
   const Motion motion = compute_motion(std::move(trace));
   EXPECT_EQ(item(motion, "clipping").status, HealthItem::Status::ok) << item(motion, "clipping").message;
   EXPECT_TRUE(motion.faults.empty());
+}
+
+/// A load that is the same for long, with markers where the converter had nothing; and spikes as wide as a filter.
+TEST(Recorders, MarkersOfALoadThatHardlyChangesAreLeftOut) {
+  Trace trace = recorded(9);
+  trace.load.assign(trace.size(), 50);
+  for (std::size_t i = trace.size() / 2; i < trace.size(); ++i) trace.load[i] = 51;
+  for (std::size_t i = 20000; i < 20040; ++i) trace.load[i] = -9999;
+  for (std::size_t i = 0; i < 5; ++i) trace.velocity[50000 + i] = 40 + static_cast<double>(i);
+  const Motion motion = compute_motion(std::move(trace));
+  EXPECT_TRUE(motion.has_fault(20010 - motion.trimmed, SampleFault::any));
+  EXPECT_TRUE(motion.has_fault(50002 - motion.trimmed, SampleFault::velocity));
+  for (const double load : motion.load) EXPECT_GT(load, 0);
+  EXPECT_LT(*std::max_element(motion.relative_velocity.begin(), motion.relative_velocity.end()), 1);
 }
 
 /// Strokes of 10 mm at 5.00 mm/s with dwells, of which only the position was recorded: its slope is taken over as much
