@@ -61,7 +61,8 @@ void find_outliers_and_held(ChannelSamples& channel, const ChannelSamples& besid
 
 /// Fills ends: samples in runs at the very end of the range, and those that gather near it without their noise. A turn
 /// (a parabola, or flatter) does neither. gathers: samples that merely gather count too, as in slips.
-void find_ends(ChannelSamples& channel, bool gathers);
+/// bridged: stretches that were filled in, ascending, which have no noise.
+void find_ends(ChannelSamples& channel, bool gathers, const std::vector<SampleSpan>& bridged);
 
 /// The upper (or lower) end of friction behind noise as wide as what is cut off: near it friction stops rising against
 /// the way of the block that its spring pulls back, which at rest is a straight line for any law, however the contact

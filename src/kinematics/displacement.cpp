@@ -48,7 +48,9 @@ std::size_t window_of_slope(std::span<const double> position, double step) {
   const double levels = static_cast<double>(kFewestLevels * kShortestHalf) * find_resolution(position) / most;
   const std::size_t narrowest =
       std::clamp(levels > 0 ? static_cast<std::size_t>(levels) : 0, kShortestHalf, std::max(kShortestHalf, widest));
-  return window_by_prediction(position.subspan(from, some), step, narrowest, widest);
+  const std::size_t of_value = window_by_prediction(position.subspan(from, some), step, narrowest, widest);
+  return std::clamp(static_cast<std::size_t>(kSlopeOverValue * static_cast<double>(of_value)), narrowest,
+                    std::max(narrowest, widest));
 }
 
 std::size_t clean(std::vector<double>& position, const char* name, std::vector<std::string>& notes) {

@@ -300,6 +300,9 @@ inline constexpr double kJumpsPerPlateau = 0.1, kUsualJump = 0.5;
 inline constexpr double kPartOfPeriod = 1.0 / 12;
 /// Samples to either side: fewer leave no degree of freedom that would show a corner; more cost time for nothing.
 inline constexpr std::size_t kShortestHalf = 4, kWidestHalf = 500;
+/// Window of the slope of a position over the one that predicts its value best: its noise falls with the third power of
+/// the window, that of a value with the first. 1: the velocity of a simulated slider is so noisy that mu_s is 1 % low.
+inline constexpr double kSlopeOverValue = 1.75;
 /// How nearly the steepest fall of the pull is that of stiffness and mass: friction that falls with speed makes it
 /// steeper by some per cent, noise by some more.
 inline constexpr double kFrequencyAgrees = 0.2;

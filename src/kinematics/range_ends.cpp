@@ -15,9 +15,9 @@ namespace {
 /// How densely values gather near an end of their range, over the density below what noise makes of that.
 struct DenseEnd {
   double density = 0;
-  double level = 0, width = 0;  ///< of the densest part
-  double from = 0, to = 0;      ///< with what lies further out, which is noise on it
-  std::size_t count = 0;        ///< within these
+  double level = 0;         ///< middle of the densest part
+  double from = 0, to = 0;  ///< with the noise on it
+  std::size_t count = 0;    ///< from its inner edge on
 };
 
 /// The densest of some widths at the end, or (noisy) near it. value(i) of n values, all within the range; upper: its
@@ -42,10 +42,11 @@ DenseEnd densest_near(std::size_t n, Value&& value, const Extremes& range, bool 
       const std::size_t below = sums[next + 3 * width] - sums[next];
       const double density = 3 * static_cast<double>(within) / static_cast<double>(std::max<std::size_t>(1, below));
       if (within < least || density <= best.density) continue;
-      const double wide = static_cast<double>(width) * bin, inner = static_cast<double>(k) * bin + wide;
-      best = {density, 0, wide, range.low, range.high, sums[k + width]};
+      // Noise takes as much below the limit as above it.
+      const double inner = static_cast<double>(k + (noisy ? 2 : 1) * width) * bin;
+      const double middle = (static_cast<double>(k) + 0.5 * static_cast<double>(width)) * bin;
+      best = {density, upper ? range.high - middle : range.low + middle, range.low, range.high, sums[k + width]};
       (upper ? best.from : best.to) = upper ? range.high - inner : range.low + inner;
-      best.level = upper ? best.from + 0.5 * wide : best.to - 0.5 * wide;
     }
   }
   return best;
@@ -84,6 +85,11 @@ double noise_over(std::span<const double> x, const std::vector<SampleSpan>& stre
   return median(std::move(inside)) / median(std::move(all));
 }
 
+bool overlaps(const SampleSpan& span, const std::vector<SampleSpan>& others) {
+  const auto next = std::ranges::upper_bound(others, span.begin, {}, &SampleSpan::end);
+  return next != others.end() && next->begin < span.end;
+}
+
 /// Distance of the nearest other value from an end of the range; 0 where the channel has few levels, each of which
 /// repeats.
 double step_beside(const ChannelSamples& channel, double limit) {
@@ -118,7 +124,7 @@ RangeEnd runs_at(const ChannelSamples& channel, double limit, double step) {
 
 }  // namespace
 
-void find_ends(ChannelSamples& channel, bool gathers) {
+void find_ends(ChannelSamples& channel, bool gathers, const std::vector<SampleSpan>& bridged) {
   const std::span<const double> x = channel.x;
   const Extremes range = x.empty() ? Extremes{} : extremes(x);
   for (std::size_t k = 0; k < 2; ++k) {
@@ -133,6 +139,7 @@ void find_ends(ChannelSamples& channel, bool gathers) {
         x.size(), [&](std::size_t i) { return x[i]; }, range, k == 1, true);
     if (dense.density < kDenseQuiet) continue;
     std::vector<SampleSpan> spans = spans_between(x, dense.from, dense.to);
+    std::erase_if(spans, [&](const SampleSpan& span) { return overlaps(span, bridged); });
     const bool is_quiet = noise_over(x, spans) < kQuiet;
     if (is_quiet || (gathers && dense.density >= kDenseAlone))
       end = {dense.level, samples_in(spans), is_quiet, std::move(spans)};
@@ -221,10 +228,7 @@ RangeEnd find_end_in_stick(const ChannelSamples& channel, std::span<const double
   const DenseEnd dense = densest_near(
       x.size(), [&](std::size_t i) { return x[i]; }, range, upper, true);
   if (dense.density < kDenseQuiet) return {};
-  // As deep again: noise takes as much below the limit as above it.
-  const double from = upper ? dense.from - dense.width : range.low;
-  const double to = upper ? range.high : dense.to + dense.width;
-  RangeEnd end{0, 0, false, spans_between(x, from, to)};
+  RangeEnd end{0, 0, false, spans_between(x, dense.from, dense.to)};
   if (!stops_rising(x, velocity, end.spans)) return {};
   std::vector<double> held;
   for (const SampleSpan& span : end.spans) {

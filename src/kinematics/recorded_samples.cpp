@@ -96,6 +96,7 @@ RecordedSamples::RecordedSamples(Trace& trace, int threads) : size_(trace.size()
     if (k == 1 && !made_velocity)
       find_outliers_and_held(velocity_, friction_, trace.velocity_kind == VelocityKind::relative);
   });
+  const std::array bridged = {friction_.held, velocity_.held};
   leave_out(trace.friction, friction_, "friction", SampleFault::friction);
   leave_out(trace.velocity, velocity_, "velocity", SampleFault::velocity);
   const auto leave_out_markers = [&](std::vector<double>& channel, const char* name) {
@@ -112,7 +113,7 @@ RecordedSamples::RecordedSamples(Trace& trace, int threads) : size_(trace.size()
   run_tasks(2, threads, [&](std::size_t k) {
     ChannelSamples& channel = k == 0 ? friction_ : velocity_;
     if (channel.x.empty()) return;
-    find_ends(channel, k == 1);
+    find_ends(channel, k == 1, bridged[k]);
     (k == 0 ? friction_range_ : velocity_range_) = extremes(channel.x);
     if (!made_velocity) (k == 0 ? friction_slew_ : velocity_slew_) = find_slew_limit(channel);
     for (std::size_t end = 0; k == 0 && end < 2 && is_block && !made_velocity && channel.is_noisy; ++end) {

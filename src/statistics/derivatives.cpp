@@ -176,10 +176,12 @@ LocalDerivatives local_derivatives(std::span<const double> signal, double step, 
 
 std::size_t window_by_prediction(std::span<const double> signal, double step, std::size_t narrowest,
                                  std::size_t widest) {
-  std::pair<double, std::size_t> best{std::numeric_limits<double>::infinity(), narrowest};
-  for (std::size_t half = narrowest; half <= widest; half += 1 + half / 4)
-    best = std::min(best, {local_derivatives(signal, step, half).prediction_error, half});
-  return best.second;
+  std::vector<std::pair<std::size_t, double>> tried;
+  for (std::size_t half = narrowest; half <= std::max(narrowest, widest); half += 1 + half / 4)
+    tried.emplace_back(half, local_derivatives(signal, step, half).prediction_error);
+  const double least = std::ranges::min_element(tried, {}, [](const auto& one) { return one.second; })->second;
+  const double as_good = least * (1 + std::sqrt(0.5 / static_cast<double>(signal.size())));
+  return std::find_if(tried.rbegin(), tried.rend(), [&](const auto& one) { return one.second <= as_good; })->first;
 }
 
 SmoothedDerivatives smoothed_derivatives(std::span<const double> signal, double step, std::size_t half) {

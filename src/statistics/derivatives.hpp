@@ -26,8 +26,9 @@ struct LocalDerivatives {
 LocalDerivatives local_derivatives(std::span<const double> signal, double step, std::size_t half,
                                    std::span<const std::size_t> corners = {});
 
-/// Samples to either side over which local_derivatives() predicts each sample best from the others (leave-one-out
-/// cross-validation): wide where noise is more than what the signal does within the window, narrow where it is less.
+/// The most samples to either side over which local_derivatives() predicts each sample from the others as well as over
+/// any, within the standard error of that (leave-one-out cross-validation; a slope wants a wider window than a value).
+/// Errors of the samples are taken as independent.
 /// narrowest, widest: to be tried. Cost: that of local_derivatives() for some twenty windows.
 std::size_t window_by_prediction(std::span<const double> signal, double step, std::size_t narrowest,
                                  std::size_t widest);
