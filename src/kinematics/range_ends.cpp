@@ -72,7 +72,8 @@ std::vector<SampleSpan> spans_between(std::span<const double> x, double from, do
   return spans;
 }
 
-/// Median innovation within stretches over that of the channel where it does not repeat; 1 where there are too few.
+/// Median innovation within stretches, and some standard errors more, over that of the channel where it does not
+/// repeat; 1 where there are too few.
 double noise_over(std::span<const double> x, const std::vector<SampleSpan>& stretches) {
   std::vector<double> inside, all;
   for (const SampleSpan& stretch : stretches) {
@@ -82,7 +83,8 @@ double noise_over(std::span<const double> x, const std::vector<SampleSpan>& stre
     if (x[i] != x[i - 1]) all.push_back(innovation(x, i));
   }
   if (inside.size() < kFewestSamples || all.size() < kFewestSamples) return 1;
-  return median(std::move(inside)) / median(std::move(all));
+  const double errors = kClippedErrors / std::sqrt(static_cast<double>(inside.size()));
+  return (1 + errors) * median(std::move(inside)) / median(std::move(all));
 }
 
 bool overlaps(const SampleSpan& span, const std::vector<SampleSpan>& others) {
