@@ -26,9 +26,9 @@ struct RangeEnd {
 
 /// A channel as recorded, and which of its samples are no readings.
 ///
-/// One law says what is possible: the innovations of the channel (how far a sample is off what its neighbours say)
-/// follow a t distribution whose scale and degrees of freedom are those of the channel, so that noise with
-/// the tails of a laser has them here too. What it reaches once in a thousand records is the reach.
+/// One law says what is possible: its innovations follow a t distribution whose scale and degrees of freedom are those
+/// of the channel, so that noise with the tails of a laser has them here too. The reach is what that exceeds once in a
+/// thousand records, but at most kMostReach times what one innovation in twenty exceeds.
 struct ChannelSamples {
   std::span<const double> x;
   Extremes usual;                    ///< where all but one value in a thousand lie at each end
@@ -65,8 +65,8 @@ void find_outliers_and_held(ChannelSamples& channel, const ChannelSamples& besid
 void find_ends(ChannelSamples& channel, bool gathers, const std::vector<SampleSpan>& bridged);
 
 /// The upper (or lower) end of friction behind noise as wide as what is cut off: near it friction stops rising against
-/// the way of the block that its spring pulls back, which at rest is a straight line for any law, however the contact
-/// creeps. count = 0 where it goes on. velocity: of the block.
+/// the displacement of the block that its spring pulls back, which at rest is a straight line for any law, however the
+/// contact creeps. count = 0 where it goes on. velocity: of the block.
 RangeEnd find_end_in_stick(const ChannelSamples& friction, std::span<const double> velocity, bool upper);
 
 /// The largest change from one sample to the next, where changes gather at it for many samples in a row: an amplifier

@@ -368,8 +368,8 @@ inline constexpr std::size_t kClipBins = 4096, kNarrowestRange = 16;
 /// Density of samples at the limit over that beside it. A turning point (a parabola) has 3 over any width, a peak 1:
 /// the first needs quiet (noise over that elsewhere), the second, of a block that sticks and slips, does not.
 inline constexpr double kDenseQuiet = 2, kDenseAlone = 6, kQuiet = 0.7;
-/// Of its usual rise over the way of the block, by which friction at a limit goes on; standard errors of a mean below
-/// it; change of that way, with which the block still rests.
+/// Of its usual rise over the displacement of the block, by which friction at a limit goes on; standard errors of a
+/// mean below it; change of that displacement, with which the block still rests.
 inline constexpr double kStillRises = 0.5, kClippedErrors = 4, kCarriedOn = 0.02;
 /// Samples at a limit: fewer do not bear on a fit; samples between two at it that are taken for clipped too (noise
 /// brings them below it), and beside a stretch.

@@ -170,7 +170,7 @@ double find_slew_limit(const ChannelSamples& channel) {
 
 namespace {
 
-/// Slope of friction against the way of the block over some samples, with the squares of that way: times the step.
+/// Slope of friction against the displacement of the block over some samples [in sampling intervals].
 StraightLine rise_of(std::span<const double> friction, std::span<const double> velocity) {
   std::vector<double> way(velocity.size());
   double at = 0;
