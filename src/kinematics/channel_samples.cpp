@@ -14,16 +14,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Of some samples, spread over the channel; not of those that repeat, as an encoder does at rest.
-std::vector<double> innovations_of(std::span<const double> x) {
-  std::vector<double> all;
-  const std::size_t stride = std::max<std::size_t>(1, x.size() / kThinned);
-  for (std::size_t i = 2; i + 2 < x.size(); i += stride) {
-    if (x[i] != x[i - 1]) all.push_back(innovation(x, i));
-  }
-  return all;
-}
-
 /// What innovations reach by chance once in a thousand records of so many samples, or kMostReach. Two quantiles that
 /// outliers do not move, if fewer than one in a hundred samples is one, give the degrees of freedom of their t.
 double reach_of(std::vector<double> innovations, std::size_t samples) {
@@ -179,6 +169,15 @@ void find_outliers_and_held(ChannelSamples& channel, const ChannelSamples& besid
   std::erase_if(channel.held, [&](const SampleSpan& run) {
     return rests && x[run.begin] == 0 && (run.begin == 0 || run.end == x.size());
   });
+}
+
+std::vector<double> innovations_of(std::span<const double> x) {
+  std::vector<double> all;
+  const std::size_t stride = std::max<std::size_t>(1, x.size() / kThinned);
+  for (std::size_t i = 2; i + 2 < x.size(); i += stride) {
+    if (x[i] != x[i - 1]) all.push_back(innovation(x, i));
+  }
+  return all;
 }
 
 std::size_t longest_by_chance(double repeats, std::size_t samples) {

@@ -55,6 +55,9 @@ inline double innovation(std::span<const double> x, std::size_t i) {
   return std::abs(x[i] - (4 * (x[i - 1] + x[i + 1]) - (x[i - 2] + x[i + 2])) / 6);
 }
 
+/// Of some samples, spread over the channel; not of those that repeat, as an encoder does at rest.
+std::vector<double> innovations_of(std::span<const double> x);
+
 /// Fills outliers and held. `beside`: the other channel of the machine. Where that moves too, a jump there and back is
 /// a slip of few samples. rests_at_zero: a velocity that reads exactly zero at rest, as an encoder does.
 void find_outliers_and_held(ChannelSamples& channel, const ChannelSamples& beside, bool rests_at_zero);

@@ -53,10 +53,9 @@ std::size_t window_of_slope(std::span<const double> position, double step) {
                     std::max(narrowest, widest));
 }
 
-std::size_t clean(std::vector<double>& position, const char* name, std::vector<std::string>& notes) {
+void clean(std::vector<double>& position, const char* name, std::vector<std::string>& notes) {
   const std::size_t lone = remove_lone_samples(position);
   if (lone > 0) notes.push_back(fmt::format("{}: {} lone samples were replaced by their neighbours", name, lone));
-  return lone;
 }
 
 void note_window(const char* what, std::size_t half, double step, std::vector<std::string>& notes) {

@@ -75,12 +75,9 @@ std::vector<SampleSpan> spans_between(std::span<const double> x, double from, do
 /// Median innovation within stretches, and some standard errors more, over that of the channel where it does not
 /// repeat; 1 where there are too few.
 double noise_over(std::span<const double> x, const std::vector<SampleSpan>& stretches) {
-  std::vector<double> inside, all;
+  std::vector<double> inside, all = innovations_of(x);
   for (const SampleSpan& stretch : stretches) {
     for (std::size_t i = stretch.begin + 2; i + 2 < stretch.end; ++i) inside.push_back(innovation(x, i));
-  }
-  for (std::size_t i = 2; i + 2 < x.size(); i += std::max<std::size_t>(1, x.size() / kThinned)) {
-    if (x[i] != x[i - 1]) all.push_back(innovation(x, i));
   }
   if (inside.size() < kFewestSamples || all.size() < kFewestSamples) return 1;
   const double errors = kClippedErrors / std::sqrt(static_cast<double>(inside.size()));
