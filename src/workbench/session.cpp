@@ -276,13 +276,14 @@ Curve WorkbenchSession::curve(const WorkbenchChoice& choice,
   }
   if (!fit) throw InputError("this model was not fitted yet", "choose the model first");
   std::fill(fit->covariance.begin(), fit->covariance.end(), 0.0);  // no band about values that were set by hand
-  for (const auto& [name, value] : values) {
+  for (const auto& entry : values) {
+    const std::string& name = entry.first;
     const auto known = std::find_if(fit->parameters.begin(), fit->parameters.end(),
                                     [&](const FitParameter& p) { return full_name(p) == name; });
     if (known == fit->parameters.end()) {
       throw InputError("the model has no parameter '" + name + "'", "choose the model first");
     }
-    known->value = value * known->parameter.si;
+    known->value = entry.second * known->parameter.si;
   }
   return curve_of(*fit, kPoints);
 }
