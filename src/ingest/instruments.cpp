@@ -68,9 +68,9 @@ class InstrumentsReader {
         if (entry.section == section) known.push_back(entry.key);
       }
       check_keys(json, section, known);
-      for (const auto& [key, value] : json.items()) {
-        const auto is_it = [&](const Entry& e) { return e.section == section && e.key == key; };
-        take(*std::ranges::find_if(entries, is_it), value, section + "." + key, lab);
+      for (const Entry& entry : entries) {
+        const auto given = entry.section == section ? json.find(entry.key) : json.end();
+        if (given != json.end()) take(entry, *given, section + "." + std::string(entry.key), lab);
       }
     }
     if (lab.force_sensor.bandwidth && lab.force_sensor.bandwidth_at_least)
