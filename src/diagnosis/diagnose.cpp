@@ -11,9 +11,9 @@
 #include "fit/points.hpp"
 #include "fit/spectral_lines.hpp"
 #include "imitations.hpp"
-#include "ladder.hpp"
 #include "limits.hpp"
 #include "record_evidence.hpp"
+#include "stepwise.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 #include "tribofit/execution/parallel.hpp"
 #include "tribofit/output/digits.hpp"
@@ -60,18 +60,15 @@ Diagnosis too_few_cycles(std::span<const Record> records, std::size_t cycles) {
   return out;
 }
 
-/// The ladder to report, of those from every base law.
-Ladder reported_of(const DiagnosisContext& context, const CompetingLaws& laws, const std::vector<Candidate>& all,
-                   const DiagnosisOptions& options, ProgressReporter& progress) {
+/// The law and the effects that these data ask for.
+Ladder search(const DiagnosisContext& context, const std::vector<Law>& laws, const std::vector<Candidate>& all,
+              const DiagnosisOptions& options, ProgressReporter& progress) {
   std::vector<Candidate> from_the_start;
   for (const Effect& effect : options.from_the_start) from_the_start.push_back({effect, describe(effect), {}, {}});
   Limits least;
   least.least_size = std::max(least.least_size, context.shared);
-  Climb climbed = climb(context, laws, from_the_start, all, least, {options.most_effects, options.until},
-                        [&](std::string_view what, double part) { progress.say(what, 0.05 + 0.75 * part); });
-  Ladder reported = std::move(climbed.ladders[reported_ladder(context, climbed.ladders)]);
-  reported.out_of_time = climbed.out_of_time;
-  return reported;
+  return climb(context, laws, from_the_start, all, least, {options.most_effects, options.until},
+               [&](std::string_view what, double part) { progress.say(what, 0.05 + 0.75 * part); });
 }
 
 /// Whether a fit ended where the ladder had found the model: within its 95 % intervals.
@@ -132,6 +129,30 @@ std::vector<Fit> fit_rungs(const DiagnosisContext& context, const Instruments& i
   ladder.steps.resize(static_cast<std::size_t>(failed - fits.begin()));
   fits.erase(failed, fits.end());
   return fits;
+}
+
+/// Laws that these data do not distinguish from that of a fitted model: with the same effects they predict held-out
+/// cycles as well, by the comparison that `identify` makes of two laws too.
+std::vector<Law> rival_laws(const Ladder& ladder, const Fit& fitted, const DiagnosisContext& context,
+                            const Instruments& instruments, const FitOptions& options) {
+  std::vector<unsigned char> is_rival(ladder.rivals.size(), 0);
+  // Every law of the list holds friction that is constant in slip as a special case.
+  if (!fitted.converged || constant_in_slip(fitted.model.law())) return {};
+  run_tasks(ladder.rivals.size(), context.threads, [&](std::size_t k) {
+    const Trial& other = ladder.rivals[k];
+    FitOptions warm = options;
+    if (!other.model.effects().empty()) warm.start = other.p;
+    const Fit rival = fit_model(other.model, context.records, observations_for(other.model, context.records),
+                                instruments, warm);
+    if (!rival.converged) return;
+    const Comparison comparison = compare_held_out(fitted, rival);
+    is_rival[k] = !comparison.first_better || comparison.p_value >= kClearlyBetter ? 1 : 0;
+  });
+  std::vector<Law> rivals;
+  for (std::size_t k = 0; k < is_rival.size(); ++k) {
+    if (is_rival[k] != 0) rivals.push_back(ladder.rivals[k].model.law());
+  }
+  return rivals;
 }
 
 /// Points that are far apart in speed differ by more than noise: what the best rung leaves is no less than that.
@@ -295,9 +316,8 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& give
   const std::vector<Candidate> all = candidates(records, fine, own, instruments);
 
   for (const Effect& effect : options.from_the_start) diagnosis.from_the_start.push_back(describe(effect).spelled());
-  const CompetingLaws laws = base_laws(records, given, options.from_the_start);
-  Ladder ladder = reported_of(context, laws, all, options, progress);
-  diagnosis.law = ladder.law;
+  Ladder ladder = search(context, competing_laws(given, options.from_the_start), all, options, progress);
+  diagnosis.law = ladder.top().model.law();
   if (!ladder.top().usable) {
     diagnosis.verdict = Verdict::not_enough_data;
     diagnosis.messages.push_back("no base law could be fitted");
@@ -316,7 +336,7 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& give
     diagnosis.verdict = Verdict::unfinished;
     return out;
   }
-  diagnosis.rival_laws = rival_laws(context, laws.all(), ladder.steps.back().coarse, out.fits.back(), instruments, fit);
+  diagnosis.rival_laws = rival_laws(ladder, out.fits.back(), context, instruments, fit);
   decide(out.fits, !structure.empty(), ladder.top(), diagnosis);
   diagnosis.next_experiment = next_experiment(ladder, all, structure);
   progress.say("a closed form of the rest", 0.95);

@@ -146,6 +146,16 @@ double level_p_value(const Level& level, const Trial& poorer, const Trial& trial
 
 }  // namespace
 
+bool beats(const DiagnosisContext& context, const Trial& first, const Trial& second) {
+  if (!first.usable || !second.usable) return first.usable;
+  const std::size_t own = first.p.size(), other = second.p.size();
+  const double more = own > other ? static_cast<double>(own - other) : 0;
+  const double least = std::max(limits::kDistinguishableSize, limits::kSizeOfParameter * more);
+  if (!(second.held_out_squares - first.held_out_squares > least * context.noise_squares())) return false;
+  const bool longer = first.model.effects().size() > second.model.effects().size();
+  return (!longer || first.plain_held_out < second.plain_held_out) && paired_p_value(second, first) < limits::kChance;
+}
+
 CandidateResult compare(const DiagnosisContext& context, const Level& level, const Trial& poorer, Trial richer,
                         const Candidate& candidate, double tests, const Limits& least) {
   const EffectInfo& info = candidate.info;

@@ -75,6 +75,11 @@ LeastFalls worth_fitting(const DiagnosisContext& context, const Trial& coarse,
 /// those of the best; fallen: what the best explains.
 bool is_far_behind(const DiagnosisContext& context, double behind, double fallen);
 
+/// The first predicts held-out cycles better than the second: by more than a least size, which each of its further
+/// parameters must earn, and by more than chance (their losses cycle by cycle, with a long-run variance). With more
+/// effects by plain squares too.
+bool beats(const DiagnosisContext& context, const Trial& first, const Trial& second);
+
 /// Every testable candidate beside the top of a ladder (top, and the same at low resolution).
 std::vector<CandidateResult> judge_all(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
                                        const std::vector<Candidate>& candidates, const Limits& least);

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "ladder.hpp"
 #include "probes.hpp"
+#include "stepwise.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
 
 namespace tribofit::diagnosis {

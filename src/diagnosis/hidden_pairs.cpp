@@ -1,4 +1,4 @@
-#include "ladder.hpp"
+#include "hidden_pairs.hpp"
 
 #include <algorithm>
 #include <iterator>

@@ -18,7 +18,7 @@ namespace {
 /// Where the evidence of an effect is.
 enum class Evidence { within_cycle, in_stick, on_plateau, at_break_away, in_time, elsewhere };
 
-Evidence evidence_of(SketchView view) {
+Evidence place_of(SketchView view) {
   switch (view) {
     case SketchView::loop:
     case SketchView::curve:
@@ -103,7 +103,7 @@ double left_by_corrections(std::span<const Record> records, const Observations& 
 
 std::string imitated_by(std::span<const Record> records, SketchView view) {
   for (const std::string& check : problems_of(records)) {
-    if (imitates(check, evidence_of(view)))
+    if (imitates(check, place_of(view)))
       return fmt::format("the check {} reports a problem that looks like it", check);
   }
   return {};

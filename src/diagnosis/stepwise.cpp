@@ -1,0 +1,525 @@
+#include "stepwise.hpp"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "fit/starts.hpp"
+#include "hidden_pairs.hpp"
+#include "limits.hpp"
+#include "tribofit/execution/parallel.hpp"
+#include "tribofit/execution/stop.hpp"
+
+namespace tribofit::diagnosis {
+
+namespace {
+
+/// The trial's model without one of its effects, fitted.
+Trial try_without(const DiagnosisContext& context, const Level& level, const Trial& full, std::string_view key,
+                  int threads = 1) {
+  Trial rest = without_effect(full, key);
+  return try_model(context, level, rest.model, std::move(rest.p), threads);
+}
+
+/// The model of `rest` with the effect of a candidate, at the values found when it was judged, at low resolution.
+Trial try_instead(const DiagnosisContext& context, const Trial& rest, const Candidate& candidate, const Trial& judged) {
+  FrictionModel model = with_effect(rest.model, candidate.effect);
+  const std::size_t offset = model.offset_of(candidate.info.key), added = model.count_of(candidate.info.key);
+  const auto from = judged.p.begin() + static_cast<std::ptrdiff_t>(judged.model.offset_of(candidate.info.key));
+  std::vector<double> start = rest.p;
+  start.insert(start.begin() + static_cast<std::ptrdiff_t>(offset), from, from + static_cast<std::ptrdiff_t>(added));
+  return try_model(context, context.coarse, model, std::move(start));
+}
+
+/// Another law with the effects of a trial, at low resolution; not usable where an effect cannot act on it. It is
+/// searched for from the data, and from the levels of the other law.
+Trial try_law(const DiagnosisContext& context, const Law& law, const Trial& known) {
+  std::vector<Effect> effects(known.model.effects().begin(), known.model.effects().end());
+  if (!std::ranges::all_of(effects, [&](const Effect& e) { return obstacle_on(law, e).empty(); })) return {};
+  const FrictionModel model(law, std::move(effects), known.model.records());
+  const Level& level = context.coarse;
+  std::vector<double> from_data = start_from_data(model, level.observations, level.bounds_of(model));
+  std::vector<double> from_levels = from_data;
+  for (std::size_t k = 0; k < model.parameters().size(); ++k) {
+    const std::string name = model.parameters()[k].full_name();
+    for (std::size_t i = 0; i < known.p.size(); ++i) {
+      if (known.model.parameters()[i].full_name() != name) continue;
+      from_levels[k] = known.p[i];
+      if (k >= model.base_count()) from_data[k] = known.p[i];
+    }
+  }
+  std::vector<std::vector<double>> starts = {std::move(from_data)};
+  if (!model.effects().empty()) starts.push_back(std::move(from_levels));
+  return try_model(context, level, model, nearest_if_several(level, model, {}, starts));
+}
+
+/// No parameter of the law is on a bound, where it has become another law, and friction falls with speed or its rise
+/// levels off within the data: a straight rise is what a viscous part says.
+bool is_law_of_its_own(const DiagnosisContext& context, const Trial& trial) {
+  const Law& law = trial.model.law();
+  if (!trial.usable) return false;
+  if (constant_in_slip(law)) return true;
+  const auto last = trial.at_bound.begin() + static_cast<std::ptrdiff_t>(trial.model.base_count());
+  if (std::find(trial.at_bound.begin(), last, true) != last) return false;
+  const double fastest = context.fine.observations.fastest;
+  return friction_at_rest(law, trial.p) > kinetic_friction(law, trial.p, fastest) ||
+         remaining_fall(law, trial.p, fastest).value_or(0) < limits::kStraight;
+}
+
+/// What the largest structure beside a step would take away of the held-out squares; 0 where none is left.
+double largest_fall(const std::vector<Probe>& probes) {
+  const std::vector<Probe> structure = remaining_structure(probes);
+  return structure.empty() ? 0 : structure.front().fall;
+}
+
+/// A model at both resolutions.
+struct Fitted {
+  Trial fine, coarse;
+};
+
+/// What is known when a step begins.
+struct Progress {
+  std::vector<Fitted> laws;  ///< every law with the effects that were found
+  std::size_t best = 0;      ///< of them
+  std::vector<LadderStep> terms = {};  ///< without their trials
+  std::vector<CandidateResult> last = {};
+  std::vector<std::size_t> withdrawn = {};
+  bool finished = false;
+};
+
+/// A candidate that is named beside a law.
+struct Named {
+  std::size_t law = 0;
+  CandidateResult result;
+  std::vector<std::size_t> equivalent;
+  std::vector<CandidateResult> judged;
+};
+
+class Stepwise {
+ public:
+  Stepwise(const DiagnosisContext& context, const std::vector<Candidate>& candidates, const Limits& least)
+      : context_(context), candidates_(candidates), least_(least) {}
+
+  void start(const std::vector<Law>& laws, const std::vector<Candidate>& from_the_start);
+  /// Adds the effect that leads, if one is named.
+  void extend(int most_effects);
+  /// What is done once, when nothing more is named.
+  void finish();
+  Ladder ladder() &&;
+
+  Progress now;
+  const Fitted& best() const { return now.laws[now.best]; }
+
+ private:
+  const std::string& key(std::size_t candidate) const { return candidates_[candidate].info.key; }
+  std::vector<CandidateResult> judge_beside(std::size_t law) const {
+    return judge_all(context_, now.laws[law].fine, now.laws[law].coarse, candidates_, least_);
+  }
+  Fitted coarse_too(Trial fine) const;
+  std::size_t best_law() const;
+  void fit_laws(Fitted known);
+  Named leader_beside(std::size_t law) const;
+  std::optional<Named> leader_of_all(bool structured);
+  bool improve(const Named& leader);
+  bool extend_by_pair(const Named* leader, double worth, int most_effects);
+  void add(const CandidateResult& result, std::vector<std::size_t> equivalent, std::vector<CandidateResult> judged);
+  bool drop_one();
+  bool exchange_one();
+  std::vector<CandidateResult> judge_instead(const LadderStep& term, const Trial& without) const;
+  std::vector<LadderStep> in_order() const;
+  void withdraw(Ladder& ladder) const;
+
+  const DiagnosisContext& context_;
+  const std::vector<Candidate>& candidates_;
+  const Limits& least_;
+};
+
+Fitted Stepwise::coarse_too(Trial fine) const {
+  Trial coarse = fine.usable ? try_model(context_, context_.coarse, fine.model, fine.p) : Trial();
+  return {std::move(fine), std::move(coarse)};
+}
+
+/// The law that predicts best; a simpler one that does as well. One that has become another law only if none is left.
+std::size_t Stepwise::best_law() const {
+  std::size_t lowest = 0;
+  const auto rank = [&](std::size_t k) {
+    const Trial& trial = now.laws[k].fine;
+    return std::tuple(!trial.usable, !is_law_of_its_own(context_, trial), trial.held_out_squares);
+  };
+  for (std::size_t k = 1; k < now.laws.size(); ++k) {
+    if (rank(k) < rank(lowest)) lowest = k;
+  }
+  std::size_t simplest = lowest;
+  for (std::size_t k = 0; k < now.laws.size(); ++k) {
+    const Trial& trial = now.laws[k].fine;
+    if (!is_law_of_its_own(context_, trial) || beats(context_, now.laws[lowest].fine, trial)) continue;
+    if (trial.p.size() < now.laws[simplest].fine.p.size()) simplest = k;
+  }
+  return simplest;
+}
+
+/// Fits every other law with the effects of a model.
+void Stepwise::fit_laws(Fitted known) {
+  const Law law = known.fine.model.law();
+  run_tasks(now.laws.size(), context_.threads, [&](std::size_t k) {
+    const Law& other = now.laws[k].fine.model.law();
+    if (other == law) return;
+    Trial coarse = try_law(context_, other, known.coarse);
+    Trial fine = coarse.usable ? try_model(context_, context_.fine, coarse.model, coarse.p) : Trial();
+    if (!fine.usable) fine.model = FrictionModel(other);
+    now.laws[k] = {std::move(fine), std::move(coarse)};
+  });
+  for (Fitted& fitted : now.laws) {
+    if (fitted.fine.model.law() == law) fitted = known;
+  }
+  now.best = best_law();
+}
+
+void Stepwise::start(const std::vector<Law>& laws, const std::vector<Candidate>& from_the_start) {
+  now.laws.resize(laws.size());
+  run_tasks(laws.size(), context_.threads, [&](std::size_t k) {
+    const int threads = context_.threads_each(laws.size());
+    Trial base = try_base(context_, context_.fine, FrictionModel(laws[k], {}, context_.records.size()), threads);
+    for (const Candidate& effect : from_the_start) base = try_with(context_, context_.fine, base, effect);
+    now.laws[k] = coarse_too(std::move(base));
+  });
+  now.best = best_law();
+}
+
+Named Stepwise::leader_beside(std::size_t law) const {
+  Named out{law, {}, {}, judge_beside(law)};
+  const Choice choice = choose(context_, out.judged, candidates_);
+  if (choice.leader) {
+    out.result = out.judged[*choice.leader];
+    out.equivalent = choice.group;
+  }
+  return out;
+}
+
+/// The candidate that predicts best of those that are named beside a law and that no law does without. Judges beside
+/// the best law only, where nothing is left to explain.
+std::optional<Named> Stepwise::leader_of_all(bool structured) {
+  Named first = leader_beside(now.best);
+  now.last = first.judged;
+  std::optional<Named> leader;
+  if (first.result.passes) leader = std::move(first);
+  if (!leader && !structured) return leader;
+  for (std::size_t law = 0; law < now.laws.size(); ++law) {
+    if (law == now.best || !now.laws[law].fine.usable) continue;
+    Named other = leader_beside(law);
+    const Trial& trial = other.result.trial;
+    if (!other.result.passes || !is_law_of_its_own(context_, trial) || !beats(context_, trial, best().fine)) continue;
+    if (!leader || beats(context_, trial, leader->result.trial)) leader = std::move(other);
+  }
+  return leader;
+}
+
+/// What a term explains may be that its search ended in a lower minimum: the model without it, fitted anew from there,
+/// then takes the place of the one it was compared with.
+bool Stepwise::improve(const Named& leader) {
+  Fitted& below = now.laws[leader.law];
+  Trial without = try_without(context_, context_.fine, leader.result.trial, key(leader.result.candidate));
+  const double least = limits::kLowerMinimum * (below.fine.held_out_squares - leader.result.trial.held_out_squares);
+  const bool lower = without.usable && without.squares < below.fine.squares &&
+                     without.held_out_squares < below.fine.held_out_squares - std::max(0.0, least);
+  if (!lower) return false;
+  below = coarse_too(std::move(without));
+  now.best = best_law();
+  return true;
+}
+
+void Stepwise::add(const CandidateResult& result, std::vector<std::size_t> equivalent,
+                   std::vector<CandidateResult> judged) {
+  LadderStep term;
+  term.added = result.candidate;
+  term.by_level = result.by_level;
+  term.equivalent = std::move(equivalent);
+  term.judged = std::move(judged);
+  now.terms.push_back(std::move(term));
+  fit_laws(coarse_too(result.trial));
+}
+
+/// Adds two effects that hide each other, if there are two such that explain more than the one that leads (if any).
+bool Stepwise::extend_by_pair(const Named* leader, double worth, int most_effects) {
+  if (static_cast<int>(now.terms.size()) + 1 >= most_effects) return false;
+  const Fitted& top = now.laws[leader != nullptr ? leader->law : now.best];
+  const std::vector<CandidateResult> judged = leader != nullptr ? leader->judged : now.last;
+  LeastOfPair least_of_pair;
+  least_of_pair.fall = worth;
+  if (leader != nullptr) {
+    const CandidateResult& alone = leader->result;
+    least_of_pair.size = limits::kRivalPart * alone.size;
+    least_of_pair.fall = std::max(worth, alone.fall + limits::kDistinguishableSize * context_.noise_squares());
+    least_of_pair.beside = alone.candidate;
+  }
+  const std::optional<HiddenPair> pair =
+      find_hidden_pair(context_, top.fine, top.coarse, judged, least_of_pair, candidates_, least_);
+  if (!pair || top.fine.held_out_squares - pair->first.trial.held_out_squares < worth) return false;
+  if (leader != nullptr && !are_distinguishable(context_, pair->first, leader->result)) return false;
+  // What was judged beside the other one is what decided: it stands for the candidate from here on.
+  std::vector<CandidateResult> of_first = judged;
+  for (CandidateResult& one : of_first) {
+    if (one.candidate == pair->first.candidate) one.p_value = pair->first.p_value;
+  }
+  add(pair->first, {}, std::move(of_first));
+  LadderStep& first = now.terms.back();
+  std::vector<CandidateResult> of_second = first.judged;
+  std::erase_if(of_second, [&](const CandidateResult& one) { return one.candidate == pair->second.candidate; });
+  of_second.push_back(pair->second);
+  add(pair->second, {}, std::move(of_second));
+  return true;
+}
+
+void Stepwise::extend(int most_effects) {
+  now.finished = true;
+  const std::vector<Probe> probes =
+      probe_all(context_, best().coarse, best().fine, residual_of(context_, best().fine));
+  const std::optional<Named> leader = leader_of_all(!remaining_structure(probes).empty());
+  if (static_cast<int>(now.terms.size()) >= most_effects) return;
+  // The probes are of low resolution, where other scatter may have been taken out: what they explain counts as that
+  // part of what the trial leaves.
+  const double here = best().fine.held_out_squares, there = best().coarse.held_out_squares;
+  const double worth =
+      limits::kHopelessPart * largest_fall(probes) * (here > 0 && there > 0 ? std::min(1.0, here / there) : 1);
+  const bool little = leader && !leader->result.by_level && here - leader->result.trial.held_out_squares < worth;
+  if (little) now.withdrawn.push_back(leader->result.candidate);
+  const Named* worthy = leader && !little ? &*leader : nullptr;
+  if (worthy != nullptr && improve(*worthy)) {
+    now.finished = false;
+  } else if (extend_by_pair(worthy, worth, most_effects)) {
+    now.finished = false;
+  } else if (worthy != nullptr) {
+    add(worthy->result, worthy->equivalent, worthy->judged);
+    now.finished = false;
+  }
+}
+
+/// Drops an effect without which the law, or another one, does as well. True where one was dropped.
+bool Stepwise::drop_one() {
+  const Fitted top = best();
+  for (std::size_t t = 0; t < now.terms.size(); ++t) {
+    const std::size_t added = *now.terms[t].added;
+    Fitted without;
+    without.fine = try_without(context_, context_.fine, top.fine, key(added), context_.threads);
+    if (!without.fine.usable) continue;
+    bool needed = compare(context_, context_.fine, without.fine, top.fine, candidates_[added], 1, least_).passes;
+    without = coarse_too(std::move(without.fine));
+    std::vector<Fitted> others(needed && !now.terms[t].by_level ? now.laws.size() : 0);
+    run_tasks(others.size(), context_.threads, [&](std::size_t k) {
+      const Law& law = now.laws[k].fine.model.law();
+      if (law == top.fine.model.law()) return;
+      others[k].coarse = try_law(context_, law, without.coarse);
+      if (!others[k].coarse.usable || beats(context_, top.coarse, others[k].coarse)) return;
+      others[k].fine = try_model(context_, context_.fine, others[k].coarse.model, others[k].coarse.p);
+    });
+    for (Fitted& other : others) {
+      if (!is_law_of_its_own(context_, other.fine) || beats(context_, top.fine, other.fine)) continue;
+      without = std::move(other);
+      needed = false;
+      break;
+    }
+    if (needed) continue;
+    now.terms.erase(now.terms.begin() + static_cast<std::ptrdiff_t>(t));
+    fit_laws(std::move(without));
+    return true;
+  }
+  return false;
+}
+
+/// The effect of a term and those that explained nearly as much when it was added, each beside the model without it.
+std::vector<CandidateResult> Stepwise::judge_instead(const LadderStep& term, const Trial& without) const {
+  const std::vector<std::string> present = without.model.effect_keys();
+  const auto added = std::ranges::find(term.judged, *term.added, &CandidateResult::candidate);
+  std::vector<const CandidateResult*> rivals;
+  for (const CandidateResult& judged : term.judged) {
+    const Candidate& candidate = candidates_[judged.candidate];
+    const bool near = added == term.judged.end() || judged.fall > limits::kRivalPart * added->fall;
+    const bool is_present = std::ranges::find(present, candidate.info.key) != present.end();
+    if (judged.trial.usable && judged.plausible && near && !is_present && candidate.info.key != key(*term.added) &&
+        without.model.acts_with(candidate.effect)) {
+      rivals.push_back(&judged);
+    }
+  }
+  std::vector<CandidateResult> out(rivals.size() + 1);
+  out[0] = compare(context_, context_.fine, without, best().fine, candidates_[*term.added], 1, least_);
+  out[0].candidate = *term.added;
+  const Trial rest = try_model(context_, context_.coarse, without.model, without.p);
+  run_tasks(rivals.size(), context_.threads, [&](std::size_t r) {
+    const std::size_t k = rivals[r]->candidate;
+    const Trial coarse = try_instead(context_, rest, candidates_[k], rivals[r]->trial);
+    const double behind = coarse.held_out_squares - best().coarse.held_out_squares;
+    out[r + 1].candidate = k;
+    if (!coarse.usable || is_far_behind(context_, behind, rest.held_out_squares - best().coarse.held_out_squares)) return;
+    out[r + 1] = compare(context_, context_.fine, without,
+                         try_model(context_, context_.fine, coarse.model, coarse.p), candidates_[k], 1, least_);
+    out[r + 1].candidate = k;
+  });
+  return out;
+}
+
+/// Each effect was chosen beside what was known then. Once the others are there too, it is compared once more with those
+/// that explained nearly as much: the better one takes its place, and its group is drawn anew. True where one was
+/// replaced.
+bool Stepwise::exchange_one() {
+  for (LadderStep& term : now.terms) {
+    const Trial without = try_without(context_, context_.fine, best().fine, key(*term.added), context_.threads);
+    if (!without.usable) continue;
+    std::vector<CandidateResult> judged = judge_instead(term, without);
+    const Choice choice = choose(context_, judged, candidates_);
+    if (!choice.leader) continue;
+    term.equivalent = choice.group;
+    if (*choice.leader == 0) continue;
+    term.added = judged[*choice.leader].candidate;
+    term.by_level = judged[*choice.leader].by_level;
+    fit_laws(coarse_too(judged[*choice.leader].trial));
+    return true;
+  }
+  return false;
+}
+
+void Stepwise::finish() {
+  const std::size_t law = now.best;
+  bool changed = false;
+  while (drop_one()) changed = true;
+  for (std::size_t k = 0; k < now.terms.size() && now.terms.size() > 1; ++k) {  // as often as there are effects
+    if (!exchange_one()) break;
+    changed = true;
+  }
+  while (changed && drop_one()) {
+  }
+  if (changed || law != now.best) now.last = judge_beside(now.best);
+}
+
+/// The terms as rungs with the law that was found, put in order from the top down: the one without which the model
+/// predicts best is the last.
+std::vector<LadderStep> Stepwise::in_order() const {
+  std::vector<LadderStep> terms = now.terms, steps(terms.size() + 1);
+  Fitted top = best();
+  for (std::size_t last = terms.size(); last > 0; --last) {
+    std::vector<Trial> without(last);
+    run_tasks(last, context_.threads, [&](std::size_t k) {
+      without[k] = try_without(context_, context_.fine, top.fine, key(*terms[k].added));
+    });
+    std::size_t least = 0;
+    for (std::size_t k = 1; k < last; ++k) {
+      const bool lower = without[k].held_out_squares < without[least].held_out_squares;
+      if (without[k].usable && (!without[least].usable || lower)) least = k;
+    }
+    steps[last] = std::move(terms[least]);
+    steps[last].trial = std::move(top.fine);
+    steps[last].coarse = std::move(top.coarse);
+    terms.erase(terms.begin() + static_cast<std::ptrdiff_t>(least));
+    top = coarse_too(std::move(without[least]));
+  }
+  steps[0].trial = std::move(top.fine);
+  steps[0].coarse = std::move(top.coarse);
+  for (LadderStep& step : steps) {
+    if (step.trial.usable) step.probes = probe_all(context_, step.coarse, step.trial, residual_of(context_, step.trial));
+  }
+  return steps;
+}
+
+/// Where structure is left that no effect explains, a name that was given to a smaller part of the error while a free
+/// function of one variable explained far more is probably wrong: it is withdrawn, with those that stand on it. Not
+/// where the effects above it have explained nearly all of that after all. Nor does a name stand for less than what is
+/// left where friction swings as a whole: a load that moves makes another law of any.
+void Stepwise::withdraw(Ladder& ladder) const {
+  const double excess = ladder.top().plain_held_out - context_.noise_squares();
+  const double swinging = context_.swing > 0 && excess > context_.noise_squares() ? excess : 0;
+  const double left = largest_fall(ladder.steps.back().probes);
+  if (left == 0 && swinging == 0) return;
+  for (std::size_t s = 1; s < ladder.steps.size(); ++s) {
+    const Trial &below = ladder.steps[s - 1].trial, &trial = ladder.steps[s].trial;
+    const double shown = largest_fall(ladder.steps[s - 1].probes);
+    const bool is_little = !ladder.steps[s].by_level && left >= limits::kLeastStructure * shown && left > 0 &&
+                           below.held_out_squares - trial.held_out_squares < limits::kWithdrawnPart * shown;
+    // What acts by the levels of break-away alone hardly shows in squares that are whitened against their scatter.
+    if (!is_little && !(below.plain_held_out - trial.plain_held_out < swinging)) continue;
+    for (std::size_t k = s; k < ladder.steps.size(); ++k) ladder.withdrawn.push_back(*ladder.steps[k].added);
+    ladder.last = ladder.steps[s].judged;
+    ladder.steps.resize(s);
+    return;
+  }
+}
+
+Ladder Stepwise::ladder() && {
+  Ladder out;
+  out.steps = in_order();
+  out.withdrawn = std::move(now.withdrawn);
+  out.last = std::move(now.last);
+  const std::size_t height = out.steps.size();
+  withdraw(out);
+  if (out.steps.size() < height) {
+    fit_laws({out.top(), out.steps.back().coarse});
+  }
+  for (const Fitted& other : now.laws) {
+    const bool same = other.fine.model.law() == out.top().model.law();
+    if (!same && is_law_of_its_own(context_, other.fine) && !beats(context_, out.top(), other.fine))
+      out.rivals.push_back(other.fine);
+  }
+  // What was added after all is distinguishable: both are there.
+  for (LadderStep& step : out.steps) {
+    std::erase_if(step.equivalent, [&](std::size_t k) {
+      return std::ranges::any_of(out.steps, [&](const LadderStep& s) { return s.added && key(*s.added) == key(k); });
+    });
+  }
+  return out;
+}
+
+/// Whether a round comes to its end in time; where it does not, everything is as it was before.
+template <class Round>
+bool ends_in_time(const std::optional<std::chrono::steady_clock::time_point>& until, Progress& now, Round&& round) {
+  if (!until) {
+    round();
+    return true;
+  }
+  Progress before = now;
+  try {
+    const StopScope scope([&until] { return std::chrono::steady_clock::now() >= *until; });
+    round();
+    return true;
+  } catch (const Stopped&) {
+    stop_point();  // it may have been stopped from outside
+    now = std::move(before);
+    return false;
+  }
+}
+
+}  // namespace
+
+std::vector<Law> competing_laws(const std::vector<Law>& given, std::span<const Effect> effects) {
+  if (given.size() == 1) return given;
+  std::vector<Law> laws;
+  for (const Law& law : law_catalogue()) {
+    if (std::ranges::all_of(effects, [&](const Effect& e) { return obstacle_on(law, e).empty(); })) laws.push_back(law);
+  }
+  return laws;
+}
+
+Ladder climb(const DiagnosisContext& context, const std::vector<Law>& laws,
+             const std::vector<Candidate>& from_the_start, const std::vector<Candidate>& candidates,
+             const Limits& least, const ClimbLimits& limits,
+             const std::function<void(std::string_view, double)>& progress) {
+  Stepwise search(context, candidates, least);
+  search.start(laws, from_the_start);
+  bool in_time = true;
+  double rounds = 0;
+  while (in_time && !search.now.finished && search.best().fine.usable) {
+    if (progress) progress(search.best().fine.model.name(), rounds / (rounds + 3));
+    ++rounds;
+    in_time = ends_in_time(limits.until, search.now, [&] {
+      search.extend(limits.most_effects);
+      if (search.now.finished) search.finish();
+    });
+  }
+  if (!search.best().fine.usable) {
+    Ladder none;
+    none.steps.emplace_back();
+    return none;
+  }
+  Ladder out = std::move(search).ladder();
+  out.out_of_time = !in_time;
+  return out;
+}
+
+}  // namespace tribofit::diagnosis
