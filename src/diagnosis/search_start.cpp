@@ -67,9 +67,11 @@ std::vector<std::vector<double>> bases_of_search(const Level& level, const Trial
   std::vector<std::vector<double>> out = {base.p};
   const auto& slips = level.observations.slips;
   if (std::any_of(slips.begin(), slips.end(), [](const auto& slip) { return slip.from_stick; })) return out;
-  const bool alone = base.model.effects().empty();
-  if (!alone || remaining_fall(base.model.law(), base.p, level.observations.fastest).value_or(0) < limits::kStraight)
-    return out;
+  const Law& law = base.model.law();
+  const double fastest = level.observations.fastest;
+  const bool rises = friction_at_rest(law, base.p) < kinetic_friction(law, base.p, fastest) ||
+                     remaining_fall(law, base.p, fastest).value_or(0) >= limits::kStraight;
+  if (!base.model.effects().empty() || !rises) return out;
   std::vector<double> anew = start_from_data(base.model, level.observations, level.bounds_of(base.model));
   std::copy(base.p.begin() + static_cast<std::ptrdiff_t>(base.model.base_count()), base.p.end(),
             anew.begin() + static_cast<std::ptrdiff_t>(base.model.base_count()));

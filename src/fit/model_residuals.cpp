@@ -175,7 +175,6 @@ bool ModelResiduals::compress(std::size_t begin, std::size_t end, const double* 
                               std::vector<Block>& blocks, const FurtherColumns& further) const {
   Workspace workspace;
   Block block;
-  Eigen::VectorXd level;
   for (std::size_t k = begin; k < end; ++k) {
     if (!fill(k, p, with_jacobian ? parameter_count() : 0, workspace, block)) return false;
     if (further) {
@@ -191,7 +190,7 @@ bool ModelResiduals::compress(std::size_t begin, std::size_t end, const double* 
       wider << block.leftCols(block.cols() - 2), more, block.rightCols(2);
       block = std::move(wider);
     }
-    if (whitening_ != nullptr && whitening_->slow > 0) whiten_level(observations_.slips[slips_[k]], level, block);
+    if (whitening_ != nullptr && whitening_->slow > 0) whiten_level(whitening_->u[slips_[k]], block);
     triangular_factor(block, blocks[k]);
   }
   return true;

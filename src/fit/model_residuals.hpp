@@ -36,10 +36,10 @@ std::vector<std::size_t> all_slips(const Observations& observations);
 /// neighbouring cycles differ by (half the mean square), so that a slow change, which may be an effect the model lacks,
 /// is not taken for scatter. In matrix form r becomes M r.
 ///
-/// Noise that wanders over longer times than a slip, as 1/f noise does, raises all of a slip alike: a second random
-/// effect, e_i times 1 ~ N(0, t^2). It looks like delta_i g_i where the law falls little, and a law whose g_i it fits
-/// better would be taken for the true one. Where a record shows 1/f noise without any model, each slip's rows are first
-/// whitened against it; t^2 comes from what neighbours differ by, too.
+/// Friction as a whole differs from cycle to cycle too (real pads by 1 to 4 %; noise that wanders over longer times than
+/// a slip does the same): a second random effect, e_i u_i with u_i the model itself and e_i ~ N(0, t^2). It looks like
+/// delta_i g_i where the law falls little, and a law whose g_i it fits better would be taken for the true one. Each
+/// slip's rows are first whitened against it; t^2 comes from what neighbours differ by, too.
 ///
 /// g_i follows the parameters too: a slip that broke away higher bends differently with them. So each slip is evaluated
 /// at its own level mu_s + delta_i, with delta_i as predicted where the whitening was made (Lindstrom and Bates'
@@ -58,12 +58,13 @@ class ModelResiduals final : public Residuals {
   /// How break-away scatter is taken out.
   struct Whitening {
     std::vector<Eigen::VectorXd> g;  ///< of every slip of the observations: its rows, then its break-away if it has one
+    std::vector<Eigen::VectorXd> u;  ///< of every slip likewise: what the model says of each row
     double part = 0;                 ///< c = 1 - 1/sqrt(1 + s^2 g'g/sigma^2); 0: nothing to take out
     double noise = 0;                ///< sigma^2, variance of a row
     std::vector<double> level;   ///< delta_i of every slip as predicted: the least-squares one, shrunk by the scatter
     std::vector<double> weight;  ///< of every slip in the mean: s^2 g'g/(sigma^2 + s^2 g'g)
     std::vector<double> log_spread;  ///< log(1 + s^2 g'g/sigma^2) of every slip: what its likelihood pays for scatter
-    double slow = 0;                 ///< t^2/sigma^2; 0: no noise raises whole slips
+    double slow = 0;                 ///< t^2/sigma^2; 0: levels do not scatter
     double stick = 1;                ///< to which the squares of stick are weakened
     bool any() const { return part > 0 || slow > 0; }
   };
@@ -118,8 +119,8 @@ class ModelResiduals final : public Residuals {
   /// Sum of squares of all rows at p, whitened. NaN where the model is not finite.
   double white_squares(const double* p) const;
 
-  /// The same with the scatter of break-away in it, which whitening takes out. Noise that raises whole slips stays
-  /// whitened where there is any.
+  /// The same with the scatter of break-away in it, which whitening takes out. That of levels stays whitened where
+  /// there is any.
   double squares_with_scatter(const double* p) const;
 
   /// What the rows of stick are worth against a rigid stick.
@@ -197,10 +198,8 @@ class ModelResiduals final : public Residuals {
   /// work(residuals, begin, end) for each part of the slips, side by side; false where it is for one of them.
   template <class Work>
   bool in_parts(Work&& work) const;
-  /// What noise that raises all of a slip alike does to its rows of friction.
-  void find_level_column(const Observations::SlipObservation& range, Eigen::VectorXd& level) const;
-  /// Takes out of the rows of a slip what that noise is expected to do. level: memory for its column.
-  void whiten_level(const Observations::SlipObservation& range, Eigen::VectorXd& level, Block& block) const;
+  /// Takes out of the rows of a slip what scatter of its level is expected to do. level: see Whitening::u.
+  void whiten_level(const Eigen::VectorXd& level, Block& block) const;
   /// c (mean over slips of the regression of the columns on g, less that of the slip), to be added as g times it: one
   /// column for each slip, a row for each of its columns but g. No columns where there is nothing to add.
   Eigen::MatrixXd corrections(const std::vector<Block>& blocks) const;

@@ -12,7 +12,7 @@ namespace tribofit {
 
 namespace {
 
-/// Products of the rows of one slip: g = d model/d mu_s, u its level, r what the model leaves.
+/// Products of the rows of one slip: g = d model/d mu_s, u the model itself, r what it leaves.
 struct Products {
   std::size_t slip = 0;  ///< index in the observations
   double rows = 0, gg = 0, gu = 0, uu = 0, gr = 0, ur = 0, rr = 0;
@@ -23,7 +23,7 @@ struct Products {
   double level() const { return (gg * ur - gu * gr) / independence(); }
   double left_by_both() const { return rr - (gr * (uu * gr - gu * ur) + ur * (gg * ur - gu * gr)) / independence(); }
 
-  /// The same of rows whitened against noise that raises all of them alike. slow: its variance over that of a row.
+  /// The same of rows whitened against scatter of the level. slow: its variance over that of a row.
   Products whitened(double slow) const {
     const double part = slow / (1 + slow * uu);
     Products out = *this;
@@ -50,17 +50,15 @@ Steps steps_of(const std::vector<double>& values, const std::vector<std::size_t>
   return out;
 }
 
-/// t^2/sigma^2 of the noise that raises whole slips: what levels of neighbours differ by, but no more than the 1/f
-/// noise that the record shows without any model. 0 where chance would make levels differ as much. What a wrong model
-/// does to the levels is thus no noise.
-double slow_noise_of_slips(const std::vector<Products>& slips, const Observations& observations) {
+/// t^2/sigma^2 of the scatter of levels: what those of neighbours differ by. 0 where chance would make them differ as
+/// much.
+double level_scatter_of_slips(const std::vector<Products>& slips, const Observations& observations) {
   std::vector<double> levels;
   std::vector<std::size_t> stretch;
-  double left = 0, freedom = 0, spread = 0, most = 0;
+  double left = 0, freedom = 0, spread = 0;
   for (const Products& slip : slips) {
     const auto& range = observations.slips[slip.slip];
-    if (!slip.has_both() || range.slow_variance == 0) continue;
-    most += range.slow_variance;
+    if (!slip.has_both()) continue;
     levels.push_back(slip.level());
     stretch.push_back(2 * range.record + (range.direction > 0 ? 1 : 0));
     left += slip.left_by_both();
@@ -74,7 +72,7 @@ double slow_noise_of_slips(const std::vector<Products>& slips, const Observation
   const auto n = static_cast<double>(levels.size());
   const double noise = left / freedom, by_chance = noise * spread / n;
   if (!(steps.variance > by_chance * (1 + kClearOfZero * std::sqrt(3 / steps.count)))) return 0;
-  return std::min(steps.variance - by_chance, most / n) / noise;
+  return (steps.variance - by_chance) / noise;
 }
 
 /// delta_i of every slip by least squares, and what noise is left once it is taken out.
@@ -118,6 +116,7 @@ void whiten_break_away(const std::vector<Products>& slips, const Observations& o
 ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
   Whitening out;
   out.g.resize(observations_.slips.size());
+  out.u.resize(observations_.slips.size());
   out.level.assign(observations_.slips.size(), 0.0);
   out.weight.assign(observations_.slips.size(), 0.0);
   const bool breaks_away =
@@ -127,7 +126,6 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
   const bool finite = in_parts([&](const ModelResiduals& own, std::size_t begin, std::size_t end) {
     Workspace workspace;
     Block block;
-    Eigen::VectorXd u;
     for (std::size_t k = begin; k < end; ++k) {
       if (!own.fill(k, p, 1, workspace, block, true)) return false;
       const auto& range = observations_.slips[slips_[k]];
@@ -135,7 +133,12 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
       Eigen::VectorXd& g = out.g[slips_[k]];
       g = block.col(0).head(rows);
       const auto r = block.col(1).head(rows);
-      find_level_column(range, u);
+      Eigen::VectorXd& u = out.u[slips_[k]];
+      u = -r;
+      for (std::size_t i = range.begin; i < range.end; ++i) {
+        u(static_cast<Eigen::Index>(i - range.begin)) += observations_.root_weight[i] * observations_.friction[i];
+      }
+      if (range.from_stick) u(rows - 1) += range.break_away_root_weight * range.break_away_friction;
       slips[k] = {
           slips_[k],      static_cast<double>(rows), g.squaredNorm(), g.dot(u), u.squaredNorm(), g.dot(r), u.dot(r),
           r.squaredNorm()};
@@ -144,27 +147,19 @@ ModelResiduals::Whitening ModelResiduals::whitening_at(const double* p) const {
   });
   if (!finite) {
     out.g.assign(observations_.slips.size(), {});
+    out.u = out.g;
     return out;
   }
   std::erase_if(slips, [](const Products& slip) { return !(slip.gg > 0); });
-  out.slow = slow_noise_of_slips(slips, observations_);
+  out.slow = level_scatter_of_slips(slips, observations_);
   for (Products& slip : slips) slip = slip.whitened(out.slow);
   whiten_break_away(slips, observations_, out);
   return out;
 }
 
-void ModelResiduals::find_level_column(const Observations::SlipObservation& range, Eigen::VectorXd& level) const {
-  level.resize(friction_rows(range));
-  for (std::size_t i = range.begin; i < range.end; ++i) {
-    level(static_cast<Eigen::Index>(i - range.begin)) = observations_.root_weight[i];
-  }
-  if (range.from_stick) level(level.size() - 1) = range.direction * range.break_away_root_weight;  // of |friction|
-}
-
-void ModelResiduals::whiten_level(const Observations::SlipObservation& range, Eigen::VectorXd& level,
-                                  Block& block) const {
-  find_level_column(range, level);
+void ModelResiduals::whiten_level(const Eigen::VectorXd& level, Block& block) const {
   const double norm = level.squaredNorm();
+  if (!(norm > 0)) return;
   const double part = 1 - 1 / std::sqrt(1 + whitening_->slow * norm);
   const Eigen::RowVectorXd mean = level.transpose() * block.topRows(level.size()) / norm;
   block.topRows(level.size()) -= part * level * mean;
