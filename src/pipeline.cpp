@@ -163,6 +163,9 @@ Identification identify(const std::string& path, const IdentifyOptions& options)
     out.notes.push_back(kFilterInModel);
   }
   fit_trace(modelled, out);
+  if (out.fits.empty()) return out;
+  const Record record = {&out.motion, &out.segmentation};
+  out.remaining = remaining_over({&record, 1}, out.fits[out.best], options.threads);
   return out;
 }
 

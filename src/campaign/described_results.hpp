@@ -99,8 +99,8 @@ constexpr auto description(const ResultParameter*) {
   using P = ResultParameter;
   return described("name", &P::name, "value", &P::value, "std_error", &P::std_error, "ci95",
                    ends(&P::lower95, &P::upper95), "unit", &P::unit, "effect", or_null(&P::effect), "systematic_error",
-                   or_null(&P::systematic), "profile_ci95", ends(&P::profile_lower95, &P::profile_upper95), "start",
-                   &P::start, "bounds", ends(&P::lower, &P::upper), "at_bound", &P::at_bound, "determined",
+                   or_null(&P::systematic), "profile_ci95", ends(&P::profile_lower95, &P::profile_upper95), "range",
+                   ends(&P::range_lower, &P::range_upper), "start", &P::start, "bounds", ends(&P::lower, &P::upper), "at_bound", &P::at_bound, "determined",
                    &P::determined);
 }
 
@@ -116,7 +116,8 @@ constexpr auto description(const ErrorFigures*) {
 
 /// The parts of the noise floor.
 constexpr auto description(const Floor*) {
-  return described("noise", &Floor::noise, "scatter", &Floor::scatter, "slow_noise", &Floor::slow_noise, "source",
+  return described("noise", &Floor::noise, "scatter", &Floor::scatter, "level_scatter",
+                   &Floor::level_scatter, "slow_noise", &Floor::slow_noise, "source",
                    &Floor::source);
 }
 

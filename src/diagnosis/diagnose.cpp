@@ -131,28 +131,41 @@ std::vector<Fit> fit_rungs(const DiagnosisContext& context, const Instruments& i
   return fits;
 }
 
-/// Laws that these data do not distinguish from that of a fitted model: with the same effects they predict held-out
-/// cycles as well, by the comparison that `identify` makes of two laws too.
-std::vector<Law> rival_laws(const Ladder& ladder, const Fit& fitted, const DiagnosisContext& context,
+/// Fits of laws that these data do not distinguish from that of a fitted model: with the same effects they predict
+/// held-out cycles as well, by the comparison that `identify` makes of two laws too.
+std::vector<Fit> rival_fits(const Ladder& ladder, const Fit& fitted, const DiagnosisContext& context,
                             const Instruments& instruments, const FitOptions& options) {
-  std::vector<unsigned char> is_rival(ladder.rivals.size(), 0);
+  std::vector<Fit> rivals(ladder.rivals.size());
   // Every law of the list holds friction that is constant in slip as a special case.
   if (!fitted.converged || constant_in_slip(fitted.model.law())) return {};
   run_tasks(ladder.rivals.size(), context.threads, [&](std::size_t k) {
     const Trial& other = ladder.rivals[k];
     FitOptions warm = options;
     if (!other.model.effects().empty()) warm.start = other.p;
-    const Fit rival = fit_model(other.model, context.records, observations_for(other.model, context.records),
-                                instruments, warm);
-    if (!rival.converged) return;
-    const Comparison comparison = compare_held_out(fitted, rival);
-    is_rival[k] = !comparison.first_better || comparison.p_value >= kClearlyBetter ? 1 : 0;
+    rivals[k] = fit_model(other.model, context.records, observations_for(other.model, context.records), instruments,
+                          warm);
   });
-  std::vector<Law> rivals;
-  for (std::size_t k = 0; k < is_rival.size(); ++k) {
-    if (is_rival[k] != 0) rivals.push_back(ladder.rivals[k].model.law());
-  }
+  std::erase_if(rivals, [&](const Fit& rival) {
+    if (!rival.converged) return true;
+    const Comparison comparison = compare_held_out(fitted, rival);
+    return comparison.first_better && comparison.p_value < kClearlyBetter;
+  });
   return rivals;
+}
+
+/// What a parameter may be over all models that the data do not distinguish: its interval in any of them.
+void add_ranges(const std::vector<Fit>& rivals, Fit& fit) {
+  for (FitParameter& own : fit.parameters) {
+    for (const Fit& rival : rivals) {
+      const auto other = std::ranges::find_if(rival.parameters, [&](const FitParameter& p) {
+        return p.parameter.name == own.parameter.name && p.effect == own.effect && p.parameter.unit == own.parameter.unit;
+      });
+      if (other == rival.parameters.end()) continue;
+      if (!own.range) own.range = {own.lower95, own.upper95};
+      own.range->lower = std::min(own.range->lower, other->lower95);
+      own.range->upper = std::max(own.range->upper, other->upper95);
+    }
+  }
 }
 
 /// Points that are far apart in speed differ by more than noise: what the best rung leaves is no less than that.
@@ -301,19 +314,9 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& give
   if (cycles < limits::kFewestCycles) return {too_few_cycles(records, cycles), {}};
   ProgressReporter progress(options);
   progress.say("reading slips", 0.02);
-  const Channels channels = all_channels(records);
-  const std::vector<RecordNoise> noises = noises_of(records, options.threads);
-  const Floor floor = floor_of(records, noises);
-  const Observations fine = observe_all(records, noises, channels, fine_values(cycles), floor.noise);
-  const Observations coarse =
-      observe_all(records, noises, channels, coarse_values(records, cycles, floor), floor.noise);
-  DiagnosisContext context(records, fine, coarse, floor.noise, floor.scatter);
-  context.shared = (floor.sampling > 0 ? std::pow(floor.sampling / floor.noise, 2) : 0) +
-                   left_by_corrections(records, fine, floor.noise) / context.noise_squares();
-  context.swing = common_swing(records);
-  context.fine.known = context.coarse.known = fit.given;
-  context.threads = options.threads;
-  const std::vector<Candidate> all = candidates(records, fine, own, instruments);
+  const RecordEvidence evidence(records, options.threads, fit.given);
+  const DiagnosisContext& context = evidence.context;
+  const std::vector<Candidate> all = candidates(records, evidence.fine, own, instruments);
 
   for (const Effect& effect : options.from_the_start) diagnosis.from_the_start.push_back(describe(effect).spelled());
   Ladder ladder = search(context, competing_laws(given, options.from_the_start), all, options, progress);
@@ -327,7 +330,7 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& give
   out.fits = fit_rungs(context, instruments, fit, ladder);
   diagnosis.floor_rmse =
       share_floor(are_points(records) ? noise_of_points(context.noise, out.fits) : context.noise, out.fits);
-  diagnosis.floor_is_sampling = floor.sampling > 0;
+  diagnosis.floor_is_sampling = evidence.floor.sampling > 0;
   const std::vector<Probe> structure = remaining_structure(ladder.steps.back().probes, context.shared);
   add_shares(ladder, structure, diagnosis);
   diagnosis.effects = findings_of(context, ladder, all, out.fits, diagnosis.floor_rmse);
@@ -336,12 +339,27 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& give
     diagnosis.verdict = Verdict::unfinished;
     return out;
   }
-  diagnosis.rival_laws = rival_laws(ladder, out.fits.back(), context, instruments, fit);
+  const std::vector<Fit> rivals = rival_fits(ladder, out.fits.back(), context, instruments, fit);
+  for (const Fit& rival : rivals) diagnosis.rival_laws.push_back(rival.model.law());
+  add_ranges(rivals, out.fits.back());
   decide(out.fits, !structure.empty(), ladder.top(), diagnosis);
   diagnosis.next_experiment = next_experiment(ladder, all, structure);
   progress.say("a closed form of the rest", 0.95);
   if (!structure.empty()) diagnosis.formula = closed_form(context, ladder.top(), structure.front());
   progress.say("done", 1);
+  return out;
+}
+
+std::vector<std::string> remaining_over(std::span<const Record> records, const Fit& fit, int threads) {
+  if (!fit.converged || count_cycles(records) < limits::kFewestCycles) return {};
+  const RecordEvidence evidence(records, threads);
+  const DiagnosisContext& context = evidence.context;
+  const Trial fine = try_model(context, context.fine, fit.model, fit.values(), threads);
+  if (!fine.usable) return {};
+  const Trial coarse = try_model(context, context.coarse, fit.model, fine.p, threads);
+  std::vector<std::string> out;
+  const auto probes = probe_all(context, coarse, fine, residual_of(context, fine));
+  for (const Probe& probe : remaining_structure(probes, context.shared)) out.emplace_back(to_string(probe.variable));
   return out;
 }
 

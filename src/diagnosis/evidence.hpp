@@ -80,9 +80,11 @@ bool is_far_behind(const DiagnosisContext& context, double behind, double fallen
 /// effects by plain squares too.
 bool beats(const DiagnosisContext& context, const Trial& first, const Trial& second);
 
-/// Every testable candidate beside the top of a ladder (top, and the same at low resolution).
+/// Every testable candidate beside the model so far (top, and the same at low resolution). to_beat: a model at low
+/// resolution; what does not promise to come near it is not fitted, and lines are not looked for again.
 std::vector<CandidateResult> judge_all(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
-                                       const std::vector<Candidate>& candidates, const Limits& least);
+                                       const std::vector<Candidate>& candidates, const Limits& least,
+                                       const Trial* to_beat = nullptr);
 
 /// The two fit differently well, by more than chance would make them differ.
 bool are_distinguishable(const DiagnosisContext& context, const CandidateResult& better, const CandidateResult& worse);

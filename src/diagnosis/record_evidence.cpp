@@ -6,6 +6,7 @@
 
 #include "fit/points.hpp"
 #include "fit/spectral_lines.hpp"
+#include "imitations.hpp"
 #include "limits.hpp"
 
 namespace tribofit::diagnosis {
@@ -80,14 +81,14 @@ Floor floor_of(std::span<const Record> records, std::span<const RecordNoise> noi
   return out;
 }
 
+namespace {
+
+/// Values of a slip in which candidates are fitted.
 std::size_t fine_values(std::size_t cycles) {
   return std::clamp(limits::kFineValues / cycles, limits::kFewestFine, limits::kMostFine);
 }
 
-std::size_t finest_values(std::size_t cycles) {
-  return std::clamp(limits::kFinestValues / cycles, fine_values(cycles), limits::kMostFine);
-}
-
+/// And in which they are screened. A filter is not seen in means over more than its time.
 std::size_t coarse_values(std::span<const Record> records, std::size_t cycles, const Floor& floor) {
   // Means over a good part of a slip are off by more than what sampling leaves.
   if (floor.sampling > 0) return fine_values(cycles);
@@ -96,5 +97,30 @@ std::size_t coarse_values(std::span<const Record> records, std::size_t cycles, c
   if (filtered) return limits::kFewestFine;
   return std::clamp(limits::kCoarseValues / cycles, limits::kFewestCoarse, limits::kMostCoarse);
 }
+
+DiagnosisContext context_of(std::span<const Record> records, const Observations& fine, const Observations& coarse,
+                            const Floor& floor, int threads, std::vector<GivenParameter> known) {
+  DiagnosisContext context(records, fine, coarse, floor.noise, floor.scatter);
+  context.shared = (floor.sampling > 0 ? std::pow(floor.sampling / floor.noise, 2) : 0) +
+                   left_by_corrections(records, fine, floor.noise) / context.noise_squares();
+  context.swing = common_swing(records);
+  context.fine.known = context.coarse.known = std::move(known);
+  context.threads = threads;
+  return context;
+}
+
+}  // namespace
+
+std::size_t finest_values(std::size_t cycles) {
+  return std::clamp(limits::kFinestValues / cycles, fine_values(cycles), limits::kMostFine);
+}
+
+RecordEvidence::RecordEvidence(std::span<const Record> records, int threads, std::vector<GivenParameter> known)
+    : noises_(noises_of(records, threads)),
+      floor(floor_of(records, noises_)),
+      fine(observe_all(records, noises_, all_channels(records), fine_values(count_cycles(records)), floor.noise)),
+      coarse(observe_all(records, noises_, all_channels(records), coarse_values(records, count_cycles(records), floor),
+                         floor.noise)),
+      context(context_of(records, fine, coarse, floor, threads, std::move(known))) {}
 
 }  // namespace tribofit::diagnosis

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "trial.hpp"
 #include "tribofit/fit/fit.hpp"
 
 namespace tribofit::diagnosis {
@@ -27,13 +28,23 @@ std::size_t count_cycles(std::span<const Record> records);
 /// Sensor noise of all records, without a line that runs through it, and scatter of break-away.
 Floor floor_of(std::span<const Record> records, std::span<const RecordNoise> noises);
 
-/// Values of a slip in which candidates are fitted.
-std::size_t fine_values(std::size_t cycles);
-
-/// And in which those that come near each other are compared.
+/// Values of a slip in which candidates that come near each other are compared.
 std::size_t finest_values(std::size_t cycles);
 
-/// And in which they are screened. A filter is not seen in means over more than its time.
-std::size_t coarse_values(std::span<const Record> records, std::size_t cycles, const Floor& floor);
+/// Records as models are judged by them. `records` must outlive it, and hold enough cycles.
+class RecordEvidence {
+ public:
+  RecordEvidence(std::span<const Record> records, int threads, std::vector<GivenParameter> known = {});
+  RecordEvidence(const RecordEvidence&) = delete;
+  RecordEvidence& operator=(const RecordEvidence&) = delete;
+
+ private:
+  std::vector<RecordNoise> noises_;
+
+ public:
+  const Floor floor;
+  const Observations fine, coarse;
+  const DiagnosisContext context;
+};
 
 }  // namespace tribofit::diagnosis

@@ -47,17 +47,10 @@ Ruling rule_between(std::span<const Record> records, const Law& law, const std::
                     const std::vector<Effect>& effects, const Instruments& instruments) {
   Ruling out;
   for (const Effect& effect : effects) out.effects.push_back({.spelled = describe(effect).spelled()});
-  const std::size_t cycles = count_cycles(records);
-  if (cycles < limits::kFewestCycles) return out;
-  const std::vector<RecordNoise> noises = noises_of(records);
-  const Floor floor = floor_of(records, noises);
-  // As finely as a diagnosis decides: means over a few milliseconds favour a filter over a lag of half of one.
-  const Channels channels = all_channels(records);
-  const Observations seen = observe_all(records, noises, channels, fine_values(cycles), floor.noise);
-  const Observations coarse =
-      observe_all(records, noises, channels, coarse_values(records, cycles, floor), floor.noise);
-  const DiagnosisContext context(records, seen, coarse, floor.noise, floor.scatter);
-  const std::vector<Candidate> all = candidates(records, seen, {}, instruments);
+  if (count_cycles(records) < limits::kFewestCycles) return out;
+  const RecordEvidence evidence(records, 1);
+  const DiagnosisContext& context = evidence.context;
+  const std::vector<Candidate> all = candidates(records, evidence.fine, {}, instruments);
   const Trial top = fit_beside(context, law, beside, all);
   if (!top.usable) return out;
   const Trial coarse_top = try_model(context, context.coarse, top.model, top.p);

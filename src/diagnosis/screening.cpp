@@ -1,6 +1,7 @@
 #include "evidence.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "tribofit/execution/parallel.hpp"
@@ -14,7 +15,7 @@ namespace {
 class CandidateScreening {
  public:
   CandidateScreening(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
-                     const std::vector<Candidate>& candidates, const Limits& least);
+                     const std::vector<Candidate>& candidates, const Limits& least, const Trial* to_beat);
 
   void judge_coarsely();
   /// Judges anew at full resolution what promises enough beside the best; false where nothing more does.
@@ -32,7 +33,8 @@ class CandidateScreening {
   const Trial &top_, &coarse_top_;
   const std::vector<Candidate>& candidates_;
   const Limits& least_passing_;
-  const LeastFalls least_falls_;
+  LeastFalls least_falls_;
+  double best_elsewhere_ = std::numeric_limits<double>::infinity();  ///< held-out squares at low resolution
   double next_ = 0;  ///< what may be added before a line
   std::vector<CandidateResult> out_;
   std::vector<SearchStart> search_starts_;
@@ -41,7 +43,8 @@ class CandidateScreening {
 };
 
 CandidateScreening::CandidateScreening(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
-                                       const std::vector<Candidate>& candidates, const Limits& least)
+                                       const std::vector<Candidate>& candidates, const Limits& least,
+                                       const Trial* to_beat)
     : context_(context),
       top_(top),
       coarse_top_(coarse_top),
@@ -53,7 +56,13 @@ CandidateScreening::CandidateScreening(const DiagnosisContext& context, const Tr
     if (!candidates[k].untestable.empty()) continue;
     if (std::find(present.begin(), present.end(), candidates[k].info.key) != present.end()) continue;
     if (!top.model.acts_with(candidates[k].effect)) continue;
+    if (to_beat != nullptr && candidates[k].info.needs_full_resolution) continue;
     out_.emplace_back().candidate = k;
+  }
+  if (to_beat != nullptr) {
+    const double behind = limits::kWorthFitting * (coarse_top.squares - to_beat->squares);
+    least_falls_ = {std::max(least_falls_.whitened, behind), std::max(least_falls_.plain, behind)};
+    best_elsewhere_ = to_beat->held_out_squares;
   }
   search_starts_.resize(out_.size());
   judged_finely_.assign(out_.size(), false);
@@ -104,7 +113,7 @@ bool CandidateScreening::is_hopeless(std::size_t t, double best) const {
 }
 
 bool CandidateScreening::judge_promising() {
-  double best = coarse_top_.held_out_squares;
+  double best = std::min(coarse_top_.held_out_squares, best_elsewhere_);
   for (std::size_t t = 0; t < out_.size(); ++t) {
     if (out_[t].trial.usable && out_[t].plausible && !info(t).needs_full_resolution) best = std::min(best, at_low_[t]);
   }
@@ -147,8 +156,9 @@ bool is_far_behind(const DiagnosisContext& context, double behind, double fallen
 }
 
 std::vector<CandidateResult> judge_all(const DiagnosisContext& context, const Trial& top, const Trial& coarse_top,
-                                       const std::vector<Candidate>& candidates, const Limits& least) {
-  CandidateScreening screening(context, top, coarse_top, candidates, least);
+                                       const std::vector<Candidate>& candidates, const Limits& least,
+                                       const Trial* to_beat) {
+  CandidateScreening screening(context, top, coarse_top, candidates, least, to_beat);
   screening.judge_coarsely();
   // Which turn out implausible at full resolution stand before the others no longer, and those get their turn.
   while (screening.judge_promising()) {

@@ -112,13 +112,13 @@ class Stepwise {
 
  private:
   const std::string& key(std::size_t candidate) const { return candidates_[candidate].info.key; }
-  std::vector<CandidateResult> judge_beside(std::size_t law) const {
-    return judge_all(context_, now.laws[law].fine, now.laws[law].coarse, candidates_, least_);
+  std::vector<CandidateResult> judge_beside(std::size_t law, const Trial* to_beat = nullptr) const {
+    return judge_all(context_, now.laws[law].fine, now.laws[law].coarse, candidates_, least_, to_beat);
   }
   Fitted coarse_too(Trial fine) const;
   std::size_t best_law() const;
   void fit_laws(Fitted known);
-  Named leader_beside(std::size_t law) const;
+  Named leader_beside(std::size_t law, const Trial* to_beat = nullptr) const;
   std::optional<Named> leader_of_all(bool structured);
   bool improve(const Named& leader);
   bool extend_by_pair(const Named* leader, double worth, int most_effects);
@@ -186,8 +186,8 @@ void Stepwise::start(const std::vector<Law>& laws, const std::vector<Candidate>&
   now.best = best_law();
 }
 
-Named Stepwise::leader_beside(std::size_t law) const {
-  Named out{law, {}, {}, judge_beside(law)};
+Named Stepwise::leader_beside(std::size_t law, const Trial* to_beat) const {
+  Named out{law, {}, {}, judge_beside(law, to_beat)};
   const Choice choice = choose(context_, out.judged, candidates_);
   if (choice.leader) {
     out.result = out.judged[*choice.leader];
@@ -206,7 +206,8 @@ std::optional<Named> Stepwise::leader_of_all(bool structured) {
   if (!leader && !structured) return leader;
   for (std::size_t law = 0; law < now.laws.size(); ++law) {
     if (law == now.best || !now.laws[law].fine.usable) continue;
-    Named other = leader_beside(law);
+    const Trial& to_beat = leader && leader->result.coarse.usable ? leader->result.coarse : best().coarse;
+    Named other = leader_beside(law, &to_beat);
     const Trial& trial = other.result.trial;
     if (!other.result.passes || !is_law_of_its_own(context_, trial) || !beats(context_, trial, best().fine)) continue;
     if (!leader || beats(context_, trial, leader->result.trial)) leader = std::move(other);

@@ -123,7 +123,16 @@ void fill_floor(const FitContext& context, const std::vector<double>& p, const S
   const ModelResiduals::Whitening& whitening = context.whitening.any() ? context.whitening : here;
   double sensitivity = 0;  // sum of squares of d model/d mu_s over the samples
   for (const Eigen::VectorXd& g : whitening.g) sensitivity += g.squaredNorm();
-  const double scatter = std::pow(floor.scatter, 2) * sensitivity / std::max(1.0, count);
+  // Break-away scatters with the level too: that part of it is not counted twice.
+  double model_squares = 0, break_away = 0;
+  for (const Eigen::VectorXd& u : whitening.u) model_squares += u.squaredNorm();
+  for (const auto& slip : context.observations.slips) {
+    if (slip.from_stick) break_away = std::max(break_away, std::pow(slip.break_away_friction, 2));
+  }
+  const double level = whitening.slow * whitening.noise, own = std::pow(floor.scatter, 2) - level * break_away;
+  floor.level_scatter = std::sqrt(level);
+  const double scatter =
+      (std::max(0.0, own) * sensitivity + level * model_squares) / std::max(1.0, count);
   const bool points = are_points(context.records);
   if (points) floor.noise = std::min(floor.noise, noise_beside(fit, p.size()));
   if (!points) {

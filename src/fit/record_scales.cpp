@@ -18,7 +18,11 @@ void set_extent(const Motion& motion, Observations& out) {
     out.fastest = std::max(out.fastest, std::abs(out.velocity[i]));
     out.largest_friction = std::max(out.largest_friction, std::abs(out.friction[i]));
   }
-  if (motion.friction_kind != FrictionKind::force || out.size() == 0) return;
+  if (out.size() == 0) return;
+  if (motion.friction_kind != FrictionKind::force) {
+    out.friction_scale = std::max(1.0, out.largest_friction);
+    return;
+  }
   // Not the largest, which may be the inertia of a mass below the sensor, or one bad sample.
   std::vector<double> sizes(out.friction.size());
   std::transform(out.friction.begin(), out.friction.end(), sizes.begin(), [](double f) { return std::abs(f); });

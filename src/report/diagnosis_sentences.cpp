@@ -78,13 +78,27 @@ std::string fall(const Diagnosis& d, const std::string& first, const std::string
   return text;
 }
 
+/// " Over them mu_k is between 0.11 and 0.32."
+std::string ranges(const DiagnosedTraces& result) {
+  std::vector<std::string> parts;
+  const Motion& motion = result.traces.front().motion;
+  for (const FitParameter& p : result.fits[result.best].parameters) {
+    if (!p.range) continue;
+    const auto level = [&](double value) { return significant(shown(p, value), 3); };
+    parts.push_back(fmt::format("{} is between {} and {}{}", full_name(p), level(p.range->lower), level(p.range->upper),
+                                unit_behind(shown_unit(p, motion))));
+  }
+  return parts.empty() ? "" : fmt::format(" Over them {}.", enumerated(parts));
+}
+
 /// " The exponential and fractional laws do as well on these data."
-std::string rivals(const Diagnosis& d) {
+std::string rivals(const DiagnosedTraces& result) {
+  const Diagnosis& d = result.diagnosis;
   std::vector<std::string> names;
   for (const Law& law : d.rival_laws) names.emplace_back(to_string(law));
   if (names.empty()) return "";
-  return fmt::format(" The {} {} as well on these data.", enumerated(names),
-                     names.size() == 1 ? "law does" : "laws do");
+  return fmt::format(" The {} {} as well on these data.{}", enumerated(names),
+                     names.size() == 1 ? "law does" : "laws do", ranges(result));
 }
 
 /// What stands in the way of any diagnosis.
@@ -119,9 +133,9 @@ const char* sentences_on(const Diagnosis& d, bool found, bool possible) {
                      : "No effect is proven. What remains looks like {possible}, but these data do not prove it: "
                        "{fall}.";
       }
-      return found ? "{found} More remains: {fall}. No effect explains the rest. {rest}"
+      return found ? "{found} More remains: {fall}. No effect explains the rest. {rest}{rivals}"
                    : "No effect of the catalogue explains what remains: the held-out error of the {law} is {error}, "
-                     "{floor}. {rest}";
+                     "{floor}. {rest}{rivals}";
     case Verdict::unconfirmed:
       return found ? "{found} A run not used in the fit does not confirm it."
                    : "The {law} is enough for the data it was fitted to: its held-out error is {error}, {floor}. A run "
@@ -196,7 +210,7 @@ std::string diagnosis_verdict(const DiagnosedTraces& result) {
   const std::string error = level(last_error(d)), floor = floor_clause(d, level(d.floor_rmse));
   const std::string first = d.ladder.empty() ? error : level(d.ladder.front().held_out_rmse);
   return fmt::format(fmt::runtime(sentences_on(d, !found.empty(), !possible.empty())), fmt::arg("law", law_text(d)),
-                     fmt::arg("error", error), fmt::arg("floor", floor), fmt::arg("rivals", rivals(d)),
+                     fmt::arg("error", error), fmt::arg("floor", floor), fmt::arg("rivals", rivals(result)),
                      fmt::arg("untestable", untestable ? "; the effects that they cannot show are listed below" : ""),
                      fmt::arg("found", found_sentence(result, found)),
                      fmt::arg("them", found.size() > 1 ? "them" : "it"), fmt::arg("fall", fall(d, first, error, floor)),

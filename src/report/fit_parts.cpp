@@ -29,7 +29,8 @@ void add_errors(const Fit& fit, const Motion& motion, ReportSection& section) {
   const Floor& floor = fit.floor;
   std::string parts = "from " + (floor.source.empty() && !motion.is_points() ? "the trace" : floor.source);
   if (!motion.is_points()) {
-    parts = fmt::format("noise {} {}, break-away scatter {}{}", level(floor.noise), parts, level(floor.scatter),
+    parts = fmt::format("noise {} {}, break-away scatter {}{}{}", level(floor.noise), parts, level(floor.scatter),
+                        floor.level_scatter > 0 ? ", level scatter " + percent(floor.level_scatter) : "",
                         floor.slow_noise > 0 ? ", slow 1/f noise " + level(floor.slow_noise) : "");
   }
   section.soft(fmt::format("RMSE {}, held-out error {}; noise floor {} ({}).", level(fit.error.rmse),

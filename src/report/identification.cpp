@@ -4,6 +4,7 @@
 #include "rate_state.hpp"
 #include "report/charts/styles.hpp"
 #include "report_parts.hpp"
+#include "tribofit/diagnosis/residual_variable.hpp"
 #include "tribofit/kinematics/health.hpp"
 #include "tribofit/report/terminal.hpp"
 
@@ -39,6 +40,19 @@ std::string verdict_on(const Fit& fit, const std::string& unit) {
                      percent(fit.error.mean_relative), remains);
 }
 
+/// A free function shows that something is missing, whatever the noise floor.
+std::string missing(const Identification& r) {
+  const Fit& fit = r.fits[r.best];
+  const auto level = [&](double value) { return significant(value, 3) + unit_behind(friction_unit(r.motion)); };
+  std::vector<std::string_view> phrases;
+  for (const std::string& name : r.remaining) phrases.push_back(phrase_of(name));
+  return fmt::format(
+      "Something is missing: what the {} law leaves varies with {}, beyond chance (held-out error {}, noise floor {}, "
+      "typical error {}). An effect is not modelled.",
+      fit.model.name(), fmt::join(phrases, " and with "), level(fit.error.held_out_rmse), level(fit.floor.rmse),
+      percent(fit.error.mean_relative));
+}
+
 /// No fit that could be relied on.
 bool is_unusable(const Identification& r) {
   return r.fits.empty() || quality_of(r.fits[r.best]) == FitQuality::unusable;
@@ -50,7 +64,7 @@ std::string verdict(const Identification& r) {
   if (!r.analysed) return "No law was fitted; what the trace does show stands above.";
   if (is_unusable(r)) return "No fit can be trusted here; the notes at the fits say why.";
   const Fit& best = r.fits[r.best];
-  std::string text = verdict_on(best, friction_unit(r.motion));
+  std::string text = r.remaining.empty() ? verdict_on(best, friction_unit(r.motion)) : missing(r);
   std::vector<std::string> loose, open;
   for (const FitParameter& p : best.parameters) {
     if (!is_fixed(p)) loose.push_back((p.effect.empty() ? "" : p.effect + " ") + p.parameter.name);
@@ -78,7 +92,7 @@ Suggestion next_command(const Identification& r, const ReportOptions& options) {
        {!usable && trimmed, "to see whether the run-up that was left out shows more", with({"--no-trim"})},
        {!usable && !has_csv, "to look at the trace sample by sample", csv},
        {!usable, "to see which options there are", "identify --help"},
-       {usable && is_above_floor(r.fits[r.best]), "to see where the law fails and which effect explains it",
+       {usable && (is_above_floor(r.fits[r.best]) || !r.remaining.empty()), "to see where the law fails and which effect explains it",
         diagnose_command(options.arguments, r.path)},
        {!has_csv, "to plot the curve, the residuals and the cycles", csv},
        {!has_option(options.arguments, "--profile"), "to check the intervals by profile likelihood",

@@ -221,6 +221,10 @@ ResultParameter result_of(const FitParameter& p, const Motion& motion) {
   out.upper95 = in_unit(p.upper95);
   out.profile_lower95 = in_unit(p.profile_lower95);
   out.profile_upper95 = in_unit(p.profile_upper95);
+  if (p.range) {
+    out.range_lower = in_unit(p.range->lower);
+    out.range_upper = in_unit(p.range->upper);
+  }
   out.start = in_unit(p.start);
   out.lower = p.parameter.lower;
   out.upper = p.parameter.upper;
@@ -262,7 +266,7 @@ Json identification_json(const Identification& r, const JsonOptions& options) {
               driven           ? Json(r.rate_state->best)
               : r.fits.empty() ? Json(nullptr)
                                : Json(r.best),
-              "law_comparison", comparisons_json(r.fits, r.best), "analysed", r.analysed, "warnings", r.warnings);
+              "law_comparison", comparisons_json(r.fits, r.best), "remaining", r.remaining, "analysed", r.analysed, "warnings", r.warnings);
   return json;
 }
 

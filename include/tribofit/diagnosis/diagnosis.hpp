@@ -152,6 +152,11 @@ struct DiagnosedTraces {
   bool analysed = true;  ///< false: some trace cannot carry the analysis, its warnings say why
 };
 
+/// Variables, as to_string(ResidualVariable) has them, over which a free function lowers what a fit leaves on held-out
+/// cycles beyond chance, the largest first: something is missing, whatever the noise floor. Empty too where there are
+/// too few cycles to tell. Cost: that of a fit, about. Throws Stopped.
+std::vector<std::string> remaining_over(std::span<const Record> records, const Fit& fit, int threads = 1);
+
 /// Diagnoses one record, or several together with all parameters shared.
 /// laws: base laws to start from; own: the user's effects, candidates beside the catalogue.
 /// Cost: about 1 s for 100 slips, on two threads. Throws Stopped within a StopScope that says so.

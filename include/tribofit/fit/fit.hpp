@@ -74,6 +74,8 @@ struct FitParameter {
   double profile_lower95 = 0, profile_upper95 = 0;  ///< NaN unless asked for or not determined by itself
   std::vector<ProfilePoint> profile;                ///< by value, from twice the half-width below to twice above; empty
                                                     ///< unless asked for
+  /// Interval over all models that these data do not distinguish; none where there is one model only.
+  std::optional<GivenParameter::Bounds> range = {};
   double start = 0;
   bool at_bound = false;
   /// false: the data fix only a combination of it with others, or nothing of it within its bounds; a message says so.
@@ -92,6 +94,7 @@ struct ErrorFigures {
 struct Floor {
   double noise = 0;       ///< sensor noise, standard deviation of a sample; what sampling leaves, if more [1 or N]
   double scatter = 0;     ///< standard deviation of the break-away level from cycle to cycle [1 or N]
+  double level_scatter = 0;  ///< the same of all friction, in proportion [1]
   double slow_noise = 0;  ///< of 1/f noise over longer times than `noise` was taken over [1 or N]
   double rmse = 0;        ///< all of them, over the samples of the error
   double sampling = 0;    ///< what sampling leaves, where that is more than sensor noise: it is alike in all cycles

@@ -46,6 +46,7 @@ struct TracePart {
   Segmentation segmentation;
   std::vector<Fit> fits;             ///< joint fits first, in the order of options.laws, then the per-cycle extremes
   std::size_t best = 0;              ///< the fit that predicts held-out cycles best
+  std::vector<std::string> remaining;  ///< see remaining_over() of diagnosis.hpp, of the best fit
   std::optional<RecordNoise> noise;  ///< of this part, once a fit has asked for it
   std::vector<std::string> notes;    ///< how the input was read
   std::vector<std::string> warnings;
