@@ -58,8 +58,7 @@ constexpr auto description(const Observations::SlipObservation*) {
   using S = Observations::SlipObservation;
   return described("begin", &S::begin, "end", &S::end, "block", &S::cycle, "direction", &S::direction, "from_stick",
                    &S::from_stick, "break_away_friction", condensed_number(&S::break_away_friction),
-                   "break_away_root_weight", condensed_number(&S::break_away_root_weight), "slow_variance",
-                   condensed_number(&S::slow_variance));
+                   "break_away_root_weight", condensed_number(&S::break_away_root_weight));
 }
 
 constexpr auto description(const RecordNoise*) {

@@ -127,7 +127,6 @@ class Stepwise {
   bool exchange_one();
   std::vector<CandidateResult> judge_instead(const LadderStep& term, const Trial& without) const;
   std::vector<LadderStep> in_order() const;
-  void withdraw(Ladder& ladder) const;
 
   const DiagnosisContext& context_;
   const std::vector<Candidate>& candidates_;
@@ -420,39 +419,15 @@ std::vector<LadderStep> Stepwise::in_order() const {
   return steps;
 }
 
-/// Where structure is left that no effect explains, a name that was given to a smaller part of the error while a free
-/// function of one variable explained far more is probably wrong: it is withdrawn, with those that stand on it. Not
-/// where the effects above it have explained nearly all of that after all. Nor does a name stand for less than what is
-/// left where friction swings as a whole: a load that moves makes another law of any.
-void Stepwise::withdraw(Ladder& ladder) const {
-  const double excess = ladder.top().plain_held_out - context_.noise_squares();
-  const double swinging = context_.swing > 0 && excess > context_.noise_squares() ? excess : 0;
-  const double left = largest_fall(ladder.steps.back().probes);
-  if (left == 0 && swinging == 0) return;
-  for (std::size_t s = 1; s < ladder.steps.size(); ++s) {
-    const Trial &below = ladder.steps[s - 1].trial, &trial = ladder.steps[s].trial;
-    const double shown = largest_fall(ladder.steps[s - 1].probes);
-    const bool is_little = !ladder.steps[s].by_level && left >= limits::kLeastStructure * shown && left > 0 &&
-                           below.held_out_squares - trial.held_out_squares < limits::kWithdrawnPart * shown;
-    // What acts by the levels of break-away alone hardly shows in squares that are whitened against their scatter.
-    if (!is_little && !(below.plain_held_out - trial.plain_held_out < swinging)) continue;
-    for (std::size_t k = s; k < ladder.steps.size(); ++k) ladder.withdrawn.push_back(*ladder.steps[k].added);
-    ladder.last = ladder.steps[s].judged;
-    ladder.steps.resize(s);
-    return;
-  }
-}
-
 Ladder Stepwise::ladder() && {
   Ladder out;
   out.steps = in_order();
   out.withdrawn = std::move(now.withdrawn);
   out.last = std::move(now.last);
   const std::size_t height = out.steps.size();
-  withdraw(out);
-  if (out.steps.size() < height) {
-    fit_laws({out.top(), out.steps.back().coarse});
-  }
+  const double excess = out.top().plain_held_out - context_.noise_squares();
+  withdraw(out, context_.swing > 0 && excess > context_.noise_squares() ? excess : 0);
+  if (out.steps.size() < height) fit_laws({out.top(), out.steps.back().coarse});
   for (const Fitted& other : now.laws) {
     const bool same = other.fine.model.law() == out.top().model.law();
     if (!same && is_law_of_its_own(context_, other.fine) && !beats(context_, out.top(), other.fine))
@@ -487,6 +462,23 @@ bool ends_in_time(const std::optional<std::chrono::steady_clock::time_point>& un
 }
 
 }  // namespace
+
+void withdraw(Ladder& ladder, double swinging) {
+  const double left = largest_fall(ladder.steps.back().probes);
+  if (left == 0 && swinging == 0) return;
+  for (std::size_t s = 1; s < ladder.steps.size(); ++s) {
+    const Trial &below = ladder.steps[s - 1].trial, &trial = ladder.steps[s].trial;
+    const double shown = largest_fall(ladder.steps[s - 1].probes);
+    const bool is_little = !ladder.steps[s].by_level && left >= limits::kLeastStructure * shown && left > 0 &&
+                           below.held_out_squares - trial.held_out_squares < limits::kWithdrawnPart * shown;
+    // What acts by the levels of break-away alone hardly shows in squares that are whitened against their scatter.
+    if (!is_little && !(below.plain_held_out - trial.plain_held_out < swinging)) continue;
+    for (std::size_t k = s; k < ladder.steps.size(); ++k) ladder.withdrawn.push_back(*ladder.steps[k].added);
+    ladder.last = ladder.steps[s].judged;
+    ladder.steps.resize(s);
+    return;
+  }
+}
 
 std::vector<Law> competing_laws(const std::vector<Law>& given, std::span<const Effect> effects) {
   if (given.size() == 1) return given;

@@ -49,9 +49,8 @@ SensorNoise sensor_noise(const Motion& motion, const Segmentation& segmentation)
 CorrelatedNoise noise_in_sticks(std::uint8_t channel, const Motion& motion, const Segmentation& segmentation);
 
 FlickerNoise flicker_noise(const Motion& motion, const Segmentation& segmentation);
-/// Writes the noise of a record to its observations, with what its slow part does to each slip: as much in every e-fold
-/// of time, from the slip to the record.
-void add_noise(const Motion& motion, const RecordNoise& noise, Observations& out);
+/// Writes the noise of a record to its observations, with the power of its slow part in proportion to friction.
+void add_noise(const RecordNoise& noise, Observations& out);
 
 /// Parameters refer to N0 and T0 of their fit, whatever the record has that they are tried on.
 void refer_to_conditions_of(const Fit& fit, Observations& observations);

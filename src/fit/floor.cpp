@@ -189,14 +189,10 @@ FlickerNoise flicker_noise(const Motion& motion, const Segmentation& segmentatio
   return {flicker_power(stretches), static_cast<double>(length)};
 }
 
-void add_noise(const Motion& motion, const RecordNoise& noise, Observations& out) {
+void add_noise(const RecordNoise& noise, Observations& out) {
   out.noise = {noise};
   const double power = noise.flicker.power;
   if (!(power > 0)) return;
-  for (auto& slip : out.slips) {
-    const auto times = static_cast<double>(motion.size()) / static_cast<double>(slip.samples.size());
-    slip.slow_variance = 2 * power * std::log(times);
-  }
   double squares = 0, weights = 0;
   for (std::size_t i = 0; i < out.size(); ++i) {
     squares += out.weight[i] * out.friction[i] * out.friction[i];

@@ -360,7 +360,7 @@ Observations observe(const Motion& motion, const Segmentation& segmentation, con
 Observations observe(const Motion& motion, const Segmentation& segmentation, const RecordNoise& noise,
                      const Channels& needs, std::size_t values_per_slip) {
   Observations out = observe_motion(motion, segmentation, noise.sensor, needs, values_per_slip);
-  add_noise(motion, noise, out);
+  add_noise(noise, out);
   return out;
 }
 

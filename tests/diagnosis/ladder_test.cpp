@@ -1,15 +1,16 @@
-/// The steps of a ladder one by one, on made-up results and on small records, whose truth is known in both.
+/// The search for law and effects, on small records and on made-up results, whose truth is known in both.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "../fit/synthetic.hpp"
 #include "diagnosis/findings.hpp"
-#include "diagnosis/ladder.hpp"
+#include "diagnosis/stepwise.hpp"
 
 namespace {
 
@@ -71,29 +72,6 @@ struct Made {
   /// does.
   double within_chance() const { return std::min(4.0, 1e-3 * context.fine.samples); }
   double beyond_doubt() const { return std::max(200.0, 1e-2 * context.fine.samples); }
-
-  LadderStep base() const {
-    LadderStep step;
-    step.trial = try_base(context, context.fine, FrictionModel(ExponentialLaw{}));
-    look_beside(context, step);
-    return step;
-  }
-  /// A step that adds `added` beside the last one, with `judged` as those that were tried there.
-  LadderStep step(const Ladder& ladder, const std::vector<Candidate>& all, std::size_t added,
-                  const std::vector<std::size_t>& judged) const {
-    LadderStep step;
-    step.added = added;
-    for (const std::size_t k : judged) {
-      const Trial& beside = ladder.top();
-      CandidateResult result =
-          compare(context, context.fine, beside, try_with(context, context.fine, beside, all[k]), all[k], 1, Limits());
-      result.candidate = k;
-      step.judged.push_back(std::move(result));
-      if (k == added) step.trial = step.judged.back().trial;
-    }
-    look_beside(context, step);
-    return step;
-  }
 };
 
 std::vector<std::string> keys_on(const Ladder& ladder, const std::vector<Candidate>& all) {
@@ -166,18 +144,18 @@ TEST(Choose, WhatADeclaredInstrumentLeavesRoomForNeedsNoOtherName) {
   EXPECT_EQ(choice.leader, 0u) << "it does not explain as much";
 }
 
-// ------------------------------------------------------------------------------------------------- prune, reconsider
+// ----------------------------------------------------------------------------------------------------------- climb
 
-TEST(Prune, DropsWhatIsRedundantAndKeepsWhatIsTrue) {
+Ladder climbed(const Made& made, const std::vector<Law>& laws, const std::vector<Candidate>& all) {
+  return climb(made.context, laws, {}, all, Limits(), {});
+}
+
+TEST(Climb, FindsWhatIsTrueAndNothingMore) {
   const std::vector<Candidate> all = candidates_of({"drift", "viscous"});
   const double sigma = 0.3, drift = 0.004;  // s/m, 1/s
   const Made only_viscous({Viscous()}, {sigma}), both({Viscous(), Drift()}, {sigma, drift});
   for (const Made* made : {&only_viscous, &both}) {
-    Ladder ladder;
-    ladder.steps.push_back(made->base());
-    ladder.steps.push_back(made->step(ladder, all, 0, {0}));
-    ladder.steps.push_back(made->step(ladder, all, 1, {1}));
-    prune(made->context, ladder, all, Limits());
+    const Ladder ladder = climbed(*made, {ExponentialLaw()}, all);
     if (made == &only_viscous) {
       EXPECT_THAT(keys_on(ladder, all), ElementsAre("viscous"));
     } else {
@@ -188,21 +166,45 @@ TEST(Prune, DropsWhatIsRedundantAndKeepsWhatIsTrue) {
   }
 }
 
-TEST(Reconsider, ABetterAlternativeTakesThePlaceOfWhatWasChosenTooEarly) {
+TEST(Climb, DistinguishesALagFromADelayBesideADrift) {
   const std::vector<Candidate> all = candidates_of({"channel-delay", "frictional-lag", "drift"});
   const double tau = 3e-3, drift = 0.004;
   const Made made({FrictionalLag(), Drift()}, {tau, drift});
-  Ladder ladder;
-  ladder.steps.push_back(made.base());
-  ladder.steps.push_back(made.step(ladder, all, 0, {0, 1}));  // as if the delay had led
-  ladder.steps[1].equivalent = {1};
-  ladder.steps.push_back(made.step(ladder, all, 2, {2}));
-  EXPECT_TRUE(reconsider(made.context, ladder, all, Limits()));
+  const Ladder ladder = climbed(made, {ExponentialLaw()}, all);
   EXPECT_THAT(keys_on(ladder, all), UnorderedElementsAre("frictional-lag", "drift"));
   for (const LadderStep& step : ladder.steps) EXPECT_THAT(step.equivalent, IsEmpty()) << "the data distinguish them";
   const Trial& top = ladder.top();
   EXPECT_NEAR(top.p[top.model.offset_of("frictional-lag")], tau, 0.05 * tau);
-  EXPECT_FALSE(reconsider(made.context, ladder, all, Limits())) << "what is right stays";
+}
+
+/// With viscous friction of as much as the drop at the fastest slip another law is the nearest one as long as it stands
+/// alone.
+TEST(Climb, ChoosesTheLawAnewWithEveryEffect) {
+  const double sigma = 2;  // s/m
+  const std::vector<Candidate> all = candidates_of({"viscous", "stribeck-exponent", "frictional-lag"});
+  const Made made({Viscous()}, {sigma});
+  const Ladder ladder = climbed(made, competing_laws({ExponentialLaw(), FractionalLaw()}, {}), all);
+  EXPECT_EQ(ladder.top().model.law(), Law(ExponentialLaw()));
+  EXPECT_THAT(keys_on(ladder, all), ElementsAre("viscous"));
+  EXPECT_THAT(ladder.rivals, IsEmpty());
+}
+
+/// Every cycle's friction is higher or lower as a whole, by 2 % independently, as that of real pads is.
+TEST(Climb, ALevelThatScattersIsNoOtherLaw) {
+  Made made;
+  std::mt19937 random(5);
+  std::normal_distribution<double> scatter(0, 0.02);
+  for (const Cycle& cycle : made.made.segmentation.cycles) {
+    const double level = 1 + scatter(random);
+    for (std::size_t i = cycle.slip.begin; i < cycle.slip.end; ++i) made.made.motion.friction[i] *= level;
+  }
+  made.fine = observe(made.made.motion, made.made.segmentation, Made::channels(), 100);
+  made.coarse = observe(made.made.motion, made.made.segmentation, Made::channels(), 40);
+  const std::vector<Candidate> all = candidates_of({"viscous", "stribeck-exponent", "frictional-lag", "drift"});
+  const Ladder ladder = climbed(made, competing_laws({ExponentialLaw(), FractionalLaw()}, {}), all);
+  EXPECT_EQ(ladder.top().model.law(), Law(ExponentialLaw()));
+  EXPECT_THAT(keys_on(ladder, all), IsEmpty());
+  EXPECT_NEAR(ladder.top().p[1], synthetic::table4_15mm(ExponentialLaw{})[1], 0.01);
 }
 
 // --------------------------------------------------------------------------------------------------------- withdraw

@@ -10,7 +10,7 @@
 
 #include "../fit/synthetic.hpp"
 #include "diagnosis/candidates.hpp"
-#include "diagnosis/ladder.hpp"
+#include "diagnosis/stepwise.hpp"
 #include "diagnosis/probes.hpp"
 #include "diagnosis/trial.hpp"
 #include "fit/spectral_lines.hpp"
@@ -82,17 +82,17 @@ TEST(Candidates, ARecordThatNeverSticksHasNoBreakAway) {
   for (const char* key : {"ringing", "contact-spin"}) EXPECT_THAT(reason(all, key), HasSubstr("break-away")) << key;
 }
 
-TEST(BaseLaws, CoulombIsTriedWhereNothingSticksAndAChoiceIsGiven) {
-  synthetic::Record made = plain();
-  const Record record = {&made.motion, &made.segmentation};
-  const std::vector<Law> two = {Law(ExponentialLaw{}), Law(FractionalLaw{})};
-  made.segmentation.kind = MotionKind::stick_slip;
-  EXPECT_EQ(base_laws(std::span(&record, 1), two).first, two);
-  const std::vector<Law> others = base_laws(std::span(&record, 1), two).others;
-  EXPECT_EQ(std::count(others.begin(), others.end(), Law(CoulombLaw{})), 1);
-  made.segmentation.kind = MotionKind::always_slipping;
-  EXPECT_EQ(base_laws(std::span(&record, 1), two).first.back(), Law(CoulombLaw{}));
-  EXPECT_EQ(base_laws(std::span(&record, 1), {Law(ExponentialLaw{})}).others.size(), 0U);  // the user has chosen
+TEST(CompetingLaws, AreAllOfTheListUnlessTheUserHasChosenOne) {
+  const std::vector<Law> all = competing_laws({Law(ExponentialLaw{}), Law(FractionalLaw{})}, {});
+  EXPECT_EQ(all.size(), law_catalogue().size());
+  EXPECT_EQ(competing_laws({Law(GaussianLaw{})}, {}), std::vector<Law>{Law(GaussianLaw{})});
+}
+
+TEST(CompetingLaws, AreThoseOnWhichTheEffectsOfTheUserCanAct) {
+  const std::vector<Effect> shape = {make_effect("stribeck-exponent")};
+  const std::vector<Law> laws = competing_laws({Law(ExponentialLaw{}), Law(FractionalLaw{})}, shape);
+  EXPECT_EQ(std::count(laws.begin(), laws.end(), Law(CoulombLaw{})), 0);
+  EXPECT_EQ(std::count(laws.begin(), laws.end(), Law(ExponentialLaw{})), 1);
 }
 
 /// What is left of the friction of a record when the true law is taken away.

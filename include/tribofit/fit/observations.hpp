@@ -83,7 +83,6 @@ struct Observations {
     double break_away_friction = 0;  ///< |mu| at break-away; NaN when there is none
     double creep_friction = std::numeric_limits<double>::quiet_NaN();  ///< |mu| read where the lead ends; NaN: no lead
     double break_away_root_weight = 1;  ///< of its residual beside that of a sample: less where its time is not known
-    double slow_variance = 0;           ///< of its level, by the 1/f noise that its record shows [1 or N squared]
     std::size_t lead_begin = 0, lead_end = 0;        ///< of the lead channels below
     std::size_t strokes_begin = 0, strokes_end = 0;  ///< of earlier_strokes
     std::size_t earlier_begin = 0, earlier_end = 0;  ///< values of the slip before its stick; none: not recorded
