@@ -146,12 +146,18 @@ double level_p_value(const Level& level, const Trial& poorer, const Trial& trial
 
 }  // namespace
 
+double size_of_fall(const DiagnosisContext& context, const Trial& poorer, const Trial& richer) {
+  return std::max((poorer.held_out_squares - richer.held_out_squares) / context.noise_squares(),
+                  (poorer.plain_squares - richer.plain_squares) / context.floor_squares(richer.whitening));
+}
+
 bool beats(const DiagnosisContext& context, const Trial& first, const Trial& second) {
   if (!first.usable || !second.usable) return first.usable;
   const std::size_t own = first.p.size(), other = second.p.size();
   const double more = own > other ? static_cast<double>(own - other) : 0;
   const double least = std::max(limits::kDistinguishableSize, limits::kSizeOfParameter * more);
-  if (!(second.held_out_squares - first.held_out_squares > least * context.noise_squares())) return false;
+  const double fall = second.held_out_squares - first.held_out_squares;
+  if (!(fall > 0) || !(size_of_fall(context, second, first) > least)) return false;
   const bool longer = first.model.effects().size() > second.model.effects().size();
   return (!longer || first.plain_held_out < second.plain_held_out) && paired_p_value(second, first) < limits::kChance;
 }
@@ -176,7 +182,7 @@ CandidateResult compare(const DiagnosisContext& context, const Level& level, con
   const double of_squares = fall_p_value(fall, parameters, noise, out.design_effect, freedom);
   out.fall = poorer.held_out_squares - trial.held_out_squares;
   const double floor = context.floor_squares(trial.whitening);
-  out.size = std::max(out.fall / context.noise_squares(), (poorer.plain_squares - trial.plain_squares) / floor);
+  out.size = size_of_fall(context, poorer, trial);
   out.plausible = is_plausible(context, trial, candidate, noise * out.design_effect);
   // Where few sticks were recorded, what goes with the stick time goes with time.
   const auto& slips = level.observations.slips;

@@ -75,6 +75,9 @@ LeastFalls worth_fitting(const DiagnosisContext& context, const Trial& coarse,
 /// those of the best; fallen: what the best explains.
 bool is_far_behind(const DiagnosisContext& context, double behind, double fallen);
 
+/// What the richer of two models takes off: see CandidateResult::size.
+double size_of_fall(const DiagnosisContext& context, const Trial& poorer, const Trial& richer);
+
 /// The first predicts held-out cycles better than the second: by more than a least size, which each of its further
 /// parameters must earn, and by more than chance (their losses cycle by cycle, with a long-run variance). With more
 /// effects by plain squares too.

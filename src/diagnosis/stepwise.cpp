@@ -53,17 +53,19 @@ Trial try_law(const DiagnosisContext& context, const Law& law, const Trial& know
   return try_model(context, level, model, nearest_if_several(level, model, {}, starts));
 }
 
-/// No parameter of the law is on a bound, where it has become another law, and friction falls with speed or its rise
-/// levels off within the data: a straight rise is what a viscous part says.
+/// Friction falls with speed, or its rise levels off within the data: a straight rise is what a viscous part says.
 bool is_law_of_its_own(const DiagnosisContext& context, const Trial& trial) {
   const Law& law = trial.model.law();
   if (!trial.usable) return false;
-  if (constant_in_slip(law)) return true;
-  const auto last = trial.at_bound.begin() + static_cast<std::ptrdiff_t>(trial.model.base_count());
-  if (std::find(trial.at_bound.begin(), last, true) != last) return false;
   const double fastest = context.fine.observations.fastest;
-  return friction_at_rest(law, trial.p) > kinetic_friction(law, trial.p, fastest) ||
+  return constant_in_slip(law) || friction_at_rest(law, trial.p) > kinetic_friction(law, trial.p, fastest) ||
          remaining_fall(law, trial.p, fastest).value_or(0) < limits::kStraight;
+}
+
+/// On a bound a law has become another one.
+bool is_on_bound(const Trial& trial) {
+  const auto last = trial.at_bound.begin() + static_cast<std::ptrdiff_t>(trial.model.base_count());
+  return std::find(trial.at_bound.begin(), last, true) != last;
 }
 
 /// What the largest structure beside a step would take away of the held-out squares; 0 where none is left.
@@ -186,7 +188,9 @@ void Stepwise::start(const std::vector<Law>& laws, const std::vector<Candidate>&
 }
 
 Named Stepwise::leader_beside(std::size_t law, const Trial* to_beat) const {
-  Named out{law, {}, {}, judge_beside(law, to_beat)};
+  Named out;
+  out.law = law;
+  out.judged = judge_beside(law, to_beat);
   const Choice choice = choose(context_, out.judged, candidates_);
   if (choice.leader) {
     out.result = out.judged[*choice.leader];
@@ -430,7 +434,7 @@ Ladder Stepwise::ladder() && {
   if (out.steps.size() < height) fit_laws({out.top(), out.steps.back().coarse});
   for (const Fitted& other : now.laws) {
     const bool same = other.fine.model.law() == out.top().model.law();
-    if (!same && is_law_of_its_own(context_, other.fine) && !beats(context_, out.top(), other.fine))
+    if (!same && is_law_of_its_own(context_, other.fine) && !is_on_bound(other.fine) && !beats(context_, out.top(), other.fine))
       out.rivals.push_back(other.fine);
   }
   // What was added after all is distinguishable: both are there.
