@@ -146,6 +146,24 @@ double level_p_value(const Level& level, const Trial& poorer, const Trial& trial
 
 }  // namespace
 
+namespace {
+
+/// By how much slow noise makes two shapes of friction differ more than independent noise would: the largest design
+/// effect of what no change of level can do.
+double slow_design(const DiagnosisContext& context, const Trial& trial) {
+  const SlowNoise slow = slow_noise_of(trial.evidence);
+  if (slow.covariance.empty()) return 1;
+  const double noise = noise_of(context.fine, trial);
+  double largest = 1;
+  for (std::size_t k = 0; k < trial.p.size(); ++k) {
+    if (trial.evidence.level(static_cast<Eigen::Index>(k)) != 0) continue;
+    largest = std::max(largest, design_effect(trial.evidence, trial.free, k, 1, noise, slow).of_slow);
+  }
+  return largest;
+}
+
+}  // namespace
+
 double size_of_fall(const DiagnosisContext& context, const Trial& poorer, const Trial& richer) {
   return std::max((poorer.held_out_squares - richer.held_out_squares) / context.noise_squares(),
                   (poorer.plain_squares - richer.plain_squares) / context.floor_squares(richer.whitening));
@@ -159,7 +177,10 @@ bool beats(const DiagnosisContext& context, const Trial& first, const Trial& sec
   const double fall = second.held_out_squares - first.held_out_squares;
   if (!(fall > 0) || !(size_of_fall(context, second, first) > least)) return false;
   const bool longer = first.model.effects().size() > second.model.effects().size();
-  return (!longer || first.plain_held_out < second.plain_held_out) && paired_p_value(second, first) < limits::kChance;
+  if (longer && !(first.plain_held_out < second.plain_held_out)) return false;
+  // Few speeds that are held for long leave few independent losses, however large.
+  return paired_p_value(second, first) < limits::kChance ||
+         fall > limits::kDistinguishable * noise_of(context.fine, first) * slow_design(context, first);
 }
 
 CandidateResult compare(const DiagnosisContext& context, const Level& level, const Trial& poorer, Trial richer,
