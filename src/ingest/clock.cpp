@@ -1,13 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 
 #include "limits.hpp"
 #include "recording.hpp"
-#include "tribofit/execution/parallel.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/output/digits.hpp"
@@ -18,9 +16,8 @@ namespace {
 
 class Clock {
  public:
-  Clock(FileRecord& recording, int threads)
+  explicit Clock(FileRecord& recording)
       : recording_(recording),
-        threads_(threads),
         time_(recording[Channel::time]),
         step_(recording[Channel::step]),
         interval_(typical_interval(time_)),
@@ -34,9 +31,8 @@ class Clock {
     begin_step(0, true);
     double shift = -time_.front(), last = time_.front();
     double step_start = last;
-    std::size_t i = shift_plain_rows(shift, last);
     time_.front() = 0;
-    for (; i < time_.size(); ++i) {
+    for (std::size_t i = 1; i < time_.size(); ++i) {
       const double now = time_[i], interval = now - last;
       const bool step_changes = begins_step(i);
       if (interval > 0 && (interval <= kGapInterval * interval_ || any_rate_) && !step_changes) [[likely]] {
@@ -64,29 +60,6 @@ class Clock {
   }
 
  private:
-  /// Takes the start of the clock off the first rows, as long as there is nothing else to say of them. Returns the
-  /// first row that is left; last: the clock of the row before it, as read. Most files are plain to their end.
-  std::size_t shift_plain_rows(double shift, double& last) {
-    if (!step_.empty() || !recording_.stated_steps.empty()) return 1;
-    const double longest = any_rate_ ? std::numeric_limits<double>::infinity() : kGapInterval * interval_;
-    std::atomic<std::size_t> plain = time_.size();  // rows before the first part with more to say
-    run_over_parts(time_.size(), threads_, [&](std::size_t begin, std::size_t end) {
-      std::size_t count = begin == 0 ? 1 : 0;
-      for (std::size_t i = std::max<std::size_t>(1, begin); i < end; ++i) {
-        const double interval = time_[i] - time_[i - 1];
-        count += interval > 0 && interval <= longest && time_[i] + shift > time_[i - 1] + shift ? 1U : 0U;
-      }
-      if (count == end - begin) return;
-      for (std::size_t least = plain; begin < least && !plain.compare_exchange_weak(least, begin);) continue;
-    });
-    if (plain == 0) return 1;
-    last = time_[plain - 1];
-    run_over_parts(plain, threads_, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) time_[i] += shift;
-    });
-    return plain;
-  }
-
   /// Whether the file says that a step begins here.
   bool begins_step(std::size_t row) {
     const auto& stated = recording_.stated_steps;
@@ -172,7 +145,7 @@ class Clock {
         fmt::format("{} gap{} in time, the first of {} s before {} (interval {} s); the data after a gap are a step of "
                     "their own",
                     gaps_.size(), gaps_.size() == 1 ? "" : "s", general(time_[first] - time_[first - 1], 6),
-                    recording_.place_of(first), general(interval_, 6)));
+                    recording_.places_of({first}), general(interval_, 6)));
   }
 
   void note_restarts() {
@@ -183,7 +156,6 @@ class Clock {
   }
 
   FileRecord& recording_;
-  int threads_;
   std::vector<double>& time_;
   std::vector<double>& step_;
   double interval_;
@@ -244,7 +216,7 @@ void set_time(FileRecord& recording, const Sampling& sampling) {
   recording.notes.push_back("time from " + sampling.source);
 }
 
-void set_clock(FileRecord& recording, const std::optional<Sampling>& sampling, int threads) {
+void set_clock(FileRecord& recording, const std::optional<Sampling>& sampling) {
   if (sampling && sampling->by_user) {
     const double found = 1 / typical_interval(recording[Channel::time]);
     if (std::abs(found / sampling->rate - 1) > kSameRate) {
@@ -252,7 +224,7 @@ void set_clock(FileRecord& recording, const std::optional<Sampling>& sampling, i
                                                general(sampling->rate), general(found)));
     }
   }
-  Clock(recording, threads).run();
+  Clock(recording).run();
   if (!(recording.size() > 1)) {
     throw InputError("has one row only", "a trace needs at least two samples", recording.file());
   }

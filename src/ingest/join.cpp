@@ -105,8 +105,7 @@ void add_channels(FileRecord& run, const FileRecord& other, double offset) {
     if (channel == Channel::time || channel == Channel::step || run.has(channel)) continue;
     const auto same_place = [&](const Column& c) { return info_of(c.channel).target == info_of(channel).target; };
     const auto there = std::find_if(run.columns.used.begin(), run.columns.used.end(), same_place);
-    if (there != run.columns.used.end()) {  // mu beside a force, v_b beside v_r:
-                                            // the first of them is meant
+    if (there != run.columns.used.end()) {  // mu beside a force, v_b beside v_r: the first of them is meant
       if (index_of(there->channel) < index_of(channel)) continue;
       run.columns.used.erase(there);
     }

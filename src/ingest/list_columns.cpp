@@ -8,7 +8,6 @@
 
 #include "limits.hpp"
 #include "recording.hpp"
-#include "statistics/reductions.hpp"
 #include "tribofit/execution/parallel.hpp"
 #include "tribofit/ingest/spelling.hpp"
 
@@ -116,13 +115,7 @@ void load_what_can_be(RawTable& table, ColumnListing& listing, int threads) {
   if (refused == wanted.size()) throw InputError(*table.columns[wanted.front()].refusal);
 }
 
-/// is_finite: the reader knows that there are numbers alone, as in most files.
-void take_numbers(const RawColumn& column, bool is_finite, ListedColumn& listed) {
-  if (is_finite && !column.is_text && !column.numbers.empty()) {
-    const Extremes all = extremes(column.numbers);
-    listed.count = column.numbers.size(), listed.lowest = all.low, listed.highest = all.high;
-    return;
-  }
+void take_numbers(const RawColumn& column, ListedColumn& listed) {
   for (const double value : column.numbers) {
     if (!(std::abs(value) < kLargestValue)) continue;
     listed.lowest = listed.count == 0 ? value : std::min(listed.lowest, value);
@@ -189,7 +182,7 @@ ColumnListing listing_of(RawTable& table, const ReadOptions& options) {
   suggest(table, listing);
   load_what_can_be(table, listing, options.threads);
   run_tasks(table.columns.size(), options.threads,
-            [&](std::size_t i) { take_numbers(table.columns[i], table.is_finite, listing.columns[i]); });
+            [&](std::size_t i) { take_numbers(table.columns[i], listing.columns[i]); });
   for (const RawRows& rows : table.rows) {
     if (rows.interval) listing.intervals.push_back(*rows.interval);
   }

@@ -89,12 +89,11 @@ struct RawTable {
   std::vector<RawColumn> columns;  ///< in the order of the file
   std::vector<RawRows> rows = std::vector<RawRows>(1);
   std::vector<RawFact> facts;
-  bool is_finite = false;  ///< the reader knows that there is no other than finite numbers below kLargestValue
   std::optional<RawDefect> first_gap;  ///< the first cell without a number, where the reader can say what it holds
   std::vector<std::string> notes, warnings;
 
-  /// Reads the values of these columns, each once; a column that cannot be read gets its `refusal`, and the others
-  /// their values. Throws InputError where no column can.
+  /// Reads the values of these columns, each once and in the order of the table; a column that cannot be read gets its
+  /// `refusal`, and the others their values. Throws InputError where no column can.
   using Load = std::function<void(RawTable& table, std::span<const std::size_t> columns, int threads)>;
   Load load;  ///< empty: the values are there
 

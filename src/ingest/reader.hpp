@@ -37,7 +37,7 @@ namespace tribofit {
 ///   messages then count values ("value 12"), and `place` says where a column stands.
 /// - Defects are refused with an InputError that names the offset, variable or line and says what to do: a file cut
 ///   off, a wrong version, counts beyond the file's size. Check every count against InputFile::size() before memory is
-///   asked for. Numbers that are not finite are refused behind the seam, unless `is_finite` says that the reader did.
+///   asked for. Numbers that are not finite are refused behind the seam.
 struct Reader {
   std::string_view format;  ///< for messages: "CSV", "MATLAB 5"
   bool (*recognises)(std::string_view head);

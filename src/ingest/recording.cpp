@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "content_hash.hpp"
@@ -67,12 +68,11 @@ std::vector<RowsPlan> plan_rows(const RawTable& table, const FileRecord& file, c
 }
 
 void load_columns(RawTable& table, const std::vector<Column>& used, int threads) {
-  std::vector<std::size_t> wanted;
+  std::set<std::size_t> indices;
+  for (const Column& column : used) indices.insert(column.index);
+  const std::vector<std::size_t> wanted(indices.begin(), indices.end());
   std::size_t values = 0;
-  for (const Column& column : used) {
-    wanted.push_back(column.index);
-    values += table.columns[column.index].count;
-  }
+  for (const std::size_t index : wanted) values += table.columns[index].count;
   refuse_beyond_memory(static_cast<double>(values), 1, table.path);
   if (table.load) table.load(table, wanted, threads);
   for (const std::size_t index : wanted) {
@@ -104,30 +104,27 @@ void refuse_unusable(const RawTable& table, const Column& column, std::size_t ro
   }
 }
 
-void to_si(const Column& column, std::vector<double>& values, int threads) {
+void to_si(const Column& column, std::vector<double>& values) {
   if (column.factor == 1 && column.offset == 0) return;
-  run_over_parts(values.size(), threads, [&](std::size_t begin, std::size_t end) {
-    const double factor = column.factor, offset = column.offset;  // which the values cannot alias
-    for (std::size_t i = begin; i < end; ++i) values[i] = factor * values[i] + offset;
-  });
+  for (double& value : values) value = column.factor * value + column.offset;
 }
 
 /// Fills the recording with the channels of one set of rows, in SI, on a clock that starts at 0; points are numbered
 /// instead.
-void take_rows(RawTable& table, const RowsPlan& plan, FileRecord& recording, int threads) {
+void take_rows(RawTable& table, const RowsPlan& plan, FileRecord& recording) {
   recording.columns = plan.columns;
   recording.lines = std::move(table.rows[plan.rows].lines);
   recording.stated_steps = std::move(table.rows[plan.rows].steps);
   const std::vector<Column>& used = plan.columns.used;
   const std::size_t rows = table.columns[used.front().index].numbers.size();
   for (const Column& column : used) refuse_unusable(table, column, rows);
-  const auto gappy = table.is_finite ? std::vector<std::size_t>() : find_gappy_rows(table, used, recording);
+  const auto gappy = find_gappy_rows(table, used, recording);
   for (auto column = used.begin(); column != used.end(); ++column) {
     auto& values = table.columns[column->index].numbers;
     const bool again =
         std::find_if(column + 1, used.end(), [&](const Column& c) { return c.index == column->index; }) != used.end();
     recording[column->channel] = again ? values : std::move(values);
-    to_si(*column, recording[column->channel], threads);
+    to_si(*column, recording[column->channel]);
   }
   if (rows == 0) throw InputError("holds no values", "check that the export was complete", recording.file());
   recognise_points(plan.may_be_points, recording);
@@ -136,7 +133,7 @@ void take_rows(RawTable& table, const RowsPlan& plan, FileRecord& recording, int
   exclude(gappy, "with a cell that is not a number", recording);
   if (recording.is_driven()) exclude(find_repeated_rows(recording), "at the time of the row before", recording);
   if (recording.is_points()) return set_points(recording);
-  set_clock(recording, plan.sampling, threads);
+  set_clock(recording, plan.sampling);
 }
 
 }  // namespace
@@ -168,7 +165,7 @@ FileRecord read_recording(RawTable table, const std::string& path, const ReadOpt
   add_all(notes, table.notes);
   add_all(warnings, table.warnings);
   std::vector<FileRecord> parts(plans.size(), file);
-  for (std::size_t k = 0; k < plans.size(); ++k) take_rows(table, plans[k], parts[k], options.threads);
+  for (std::size_t k = 0; k < plans.size(); ++k) take_rows(table, plans[k], parts[k]);
   const auto with_friction = std::ranges::find_if(parts, &FileRecord::has_friction);
   if (with_friction != parts.end()) std::iter_swap(parts.begin(), with_friction);
   FileRecord run = std::move(parts.front());
@@ -257,10 +254,6 @@ InputLocation FileRecord::location(std::size_t row, Channel channel) const {
     if (row >= parts[i].begin) return in(parts[i].path, parts[i].lines, row - parts[i].begin);
   }
   return in(path, lines, row);
-}
-
-std::string FileRecord::place_of(std::size_t row) const {
-  return places_of({row});
 }
 
 std::string FileRecord::places_of(const std::vector<std::size_t>& rows) const {

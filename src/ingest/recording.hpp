@@ -61,8 +61,6 @@ struct FileRecord : Trace {
   InputLocation file() const { return {path, 0, ""}; }
   /// Where a row came from, for messages.
   InputLocation location(std::size_t row, Channel channel) const;
-  /// "line 22", or "value 21" where the file has no lines.
-  std::string place_of(std::size_t row) const;
   /// Rows as lines of the file, or as values where it has none: "lines 3, 8" (at most 12 of them).
   std::string places_of(const std::vector<std::size_t>& rows) const;
   std::size_t recipe_size() const { return steps.empty() ? 0 : steps.back().recipe + 1; }
@@ -153,7 +151,7 @@ void set_time(FileRecord& recording, const Sampling& sampling);
 ///   may be taken across it; a warning names it. It belongs to the same step of the recipe.
 /// Throws InputError where time goes backwards or repeats otherwise, and where more than one interval in a
 /// thousand (and more than 20) is a gap: such a clock is not one of samples.
-void set_clock(FileRecord& recording, const std::optional<Sampling>& sampling, int threads);
+void set_clock(FileRecord& recording, const std::optional<Sampling>& sampling);
 
 /// The median of up to 4096 evenly spread intervals [s]; 0 for fewer than two times.
 double typical_interval(const std::vector<double>& time);

@@ -1,7 +1,6 @@
 #include "tribofit/ingest/spelling.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "tribofit/ingest/nearest_name.hpp"
 
@@ -28,16 +27,8 @@ std::size_t distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string nearest_name(std::string_view text, std::span<const std::string> known) {
-  std::string best;
-  std::size_t least = std::numeric_limits<std::size_t>::max();
-  for (const std::string& name : known) {
-    const std::size_t d = distance(text, name);
-    if (d < least) {
-      least = d;
-      best = name;
-    }
-  }
-  return best;
+  if (known.empty()) return {};
+  return *std::ranges::min_element(known, {}, [&](const std::string& name) { return distance(text, name); });
 }
 
 std::string likely_name(std::string_view text, std::span<const std::string> known) {

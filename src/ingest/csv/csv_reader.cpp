@@ -132,17 +132,12 @@ void load_columns(const InputFile& file, const Dialect& dialect, RawTable& table
                   int threads) {
   std::vector<WantedCell> wanted;
   for (const std::size_t index : columns) wanted.push_back({index, table.columns[index].shown_name()});
-  const auto before = [](const WantedCell& a, const WantedCell& b) { return a.index < b.index; };
-  const auto same = [](const WantedCell& a, const WantedCell& b) { return a.index == b.index; };
-  std::sort(wanted.begin(), wanted.end(), before);
-  wanted.erase(std::unique(wanted.begin(), wanted.end(), same), wanted.end());
   Rows rows = read_rows(file, dialect, wanted, threads);
   if (rows.size() == 0) {
     throw InputError("has no rows of numbers", "check that the export was complete", {table.path, 0, ""});
   }
   table.rows.front().steps = find_steps(dialect, rows, table);
   say_text_rows(rows, table);
-  table.is_finite = !rows.first_gap;
   table.first_gap = rows.first_gap;
   for (RawRows& block : table.rows) block.lines = rows.lines;
   for (std::size_t k = 0; k < wanted.size(); ++k) table.columns[wanted[k].index].numbers = std::move(rows.values[k]);

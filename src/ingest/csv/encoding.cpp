@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <optional>
+#include <utility>
 
 #include "ingest/limits.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -17,36 +19,6 @@ unsigned char byte_at(std::string_view text, std::size_t i) {
   return static_cast<unsigned char>(text[i]);
 }
 
-/// Length of the UTF-8 sequence at `i`, 0 where no valid one begins. A sequence cut off by the end of the text is
-/// accepted.
-std::size_t utf8_sequence(std::string_view text, std::size_t i) {
-  const unsigned char lead = byte_at(text, i);
-  const std::size_t length = lead < 0x80                   ? 1
-                             : lead >= 0xC2 && lead < 0xE0 ? 2
-                             : lead >= 0xE0 && lead < 0xF0 ? 3
-                             : lead >= 0xF0 && lead < 0xF5 ? 4
-                                                           : 0;
-  for (std::size_t k = 1; k < length && i + k < text.size(); ++k) {
-    if ((byte_at(text, i + k) & 0xC0) != 0x80) return 0;
-  }
-  if (length > 2 && i + 1 < text.size()) {  // neither longer than need be, nor a half of UTF-16, nor beyond Unicode
-    const unsigned char second = byte_at(text, i + 1);
-    if ((lead == 0xE0 && second < 0xA0) || (lead == 0xED && second >= 0xA0) || (lead == 0xF0 && second < 0x90) ||
-        (lead == 0xF4 && second >= 0x90))
-      return 0;
-  }
-  return length;
-}
-
-bool is_utf8(std::string_view text) {
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t length = utf8_sequence(text, i);
-    if (length == 0) return false;
-    i += length;
-  }
-  return true;
-}
-
 bool high_bytes_are_pairs(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (byte_at(text, i) < 0x80) continue;
@@ -56,24 +28,35 @@ bool high_bytes_are_pairs(std::string_view text) {
   return true;
 }
 
-/// The text from an encoding that iconv knows; '?' for every byte that is invalid in it.
-std::string converted(std::string_view text, const char* from) {
-  const iconv_t converter = iconv_open("UTF-8", from);
-  std::string source(text), result(2 * text.size() + 4, '\0');
-  if (converter == reinterpret_cast<iconv_t>(-1)) return valid_utf8(text);
-  char* in = source.data();
-  char* out = result.data();
+struct Conversion {
+  std::string text;
+  bool is_valid = true;  // but for a letter that the end of the text cuts off
+};
+
+/// The text in another encoding that iconv knows; `mark`, in the new one, for every byte that is invalid.
+Conversion converted(std::string_view text, const char* from, const char* to, std::string_view mark) {
+  const iconv_t converter = iconv_open(to, from);
+  if (converter == reinterpret_cast<iconv_t>(-1)) return {valid_utf8(text)};
+  std::string source(text), result(3 * text.size() + 4, '\0');
+  char *in = source.data(), *out = result.data();
   std::size_t in_left = source.size(), out_left = result.size();
+  bool is_valid = true, is_cut_off = false;
   while (in_left > 0 && iconv(converter, &in, &in_left, &out, &out_left) == static_cast<std::size_t>(-1)) {
-    if (in_left == 0 || out_left == 0) break;
+    is_cut_off = is_cut_off || errno == EINVAL;
+    is_valid = is_valid && is_cut_off;
+    out = std::ranges::copy(mark, out).out;
+    out_left -= mark.size();
     ++in;
     --in_left;
-    *out++ = '?';
-    --out_left;
   }
   iconv_close(converter);
   result.resize(result.size() - out_left);
-  return result;
+  return {std::move(result), is_valid};
+}
+
+/// UTF-16 has no more letters than there are, where UTF-8 from itself lets those beyond Unicode through.
+Conversion utf16_from_utf8(std::string_view text) {
+  return converted(text, "UTF-8", "UTF-16LE", "\xFD\xFF");
 }
 
 struct Signature {
@@ -124,25 +107,18 @@ void refuse_unless_text(std::string_view head, const std::string& path) {
 }
 
 Encoding guess_encoding(std::string_view head) {
-  if (is_utf8(head)) return Encoding::utf8;
+  if (utf16_from_utf8(head).is_valid) return Encoding::utf8;
   return high_bytes_are_pairs(head) ? Encoding::gbk : Encoding::latin1;
 }
 
 std::string to_utf8(std::string_view text, Encoding encoding) {
-  if (encoding == Encoding::latin1) return converted(text, "ISO-8859-1");
-  if (encoding == Encoding::gbk) return converted(text, "GBK");
+  if (encoding == Encoding::latin1) return converted(text, "ISO-8859-1", "UTF-8", "?").text;
+  if (encoding == Encoding::gbk) return converted(text, "GBK", "UTF-8", "?").text;
   return std::string(text);
 }
 
 std::string valid_utf8(std::string_view text) {
-  std::string valid;
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t length = utf8_sequence(text, i);
-    const bool is_letter = length > 0 && i + length <= text.size();
-    valid += is_letter ? text.substr(i, length) : "\xEF\xBF\xBD";
-    i += is_letter ? length : 1;
-  }
-  return valid;
+  return converted(utf16_from_utf8(text).text, "UTF-16LE", "UTF-8", "").text;
 }
 
 std::size_t byte_order_mark(std::string_view head) {

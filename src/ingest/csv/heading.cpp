@@ -13,12 +13,7 @@ namespace tribofit {
 namespace {
 
 bool is_unit_cell(std::string_view cell) {
-  std::string_view text = trimmed(cell);
-  if (text.size() >= 2 &&
-      ((text.front() == '[' && text.back() == ']') || (text.front() == '(' && text.back() == ')'))) {
-    return true;
-  }
-  return find_unit(text).has_value();
+  return strip_brackets(cell) != trimmed(cell) || find_unit(cell);
 }
 
 /// Whether the cells are units: all of them, or at least half where none is the name of a channel (so that a unit

@@ -24,13 +24,8 @@ std::string text_of(const InputFile& file, const TextTableRules& rules) {
 }
 
 char separator_of(std::string_view header) {
-  char separator = ',';
-  for (const char candidate : {';', '\t'}) {
-    if (std::count(header.begin(), header.end(), candidate) > std::count(header.begin(), header.end(), separator)) {
-      separator = candidate;
-    }
-  }
-  return separator;
+  const auto fewer = [&](char a, char b) { return std::ranges::count(header, a) < std::ranges::count(header, b); };
+  return std::max({',', ';', '\t'}, fewer);
 }
 
 }  // namespace

@@ -156,13 +156,10 @@ RawTable read_matlab(std::shared_ptr<const InputFile> file) {
   Listing listing(table);
   for (const MatArray& array : describe_mat_file(*file, variables)) listing.add(array);
   table.load = [file, sources = listing.finish()](RawTable& filled, std::span<const std::size_t> columns, int) {
-    std::vector<std::size_t> wanted(columns.begin(), columns.end());
-    std::sort(wanted.begin(), wanted.end());  // as the arrays stand in the file
-    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
     std::vector<MatColumn> asked;
-    for (const std::size_t index : wanted) asked.push_back(sources[index]);
+    for (const std::size_t index : columns) asked.push_back(sources[index]);
     Apart reading = read_mat_columns(*file, std::move(asked));
-    for (const std::size_t index : wanted) {
+    for (const std::size_t index : columns) {
       try {
         filled.columns[index].numbers = reading.next<std::vector<double>>();
       } catch (const InputError& error) {

@@ -49,7 +49,6 @@ void load_channels(const InputFile& file, const Objects& channels, RawTable& tab
   std::map<std::size_t, std::vector<double>*> wanted;
   for (const std::size_t index : columns) {
     RawColumn& column = table.columns[index];
-    if (!column.numbers.empty()) continue;
     if (column.is_text) {
       column.refusal.emplace("holds text, not numbers", "name another column with " + setting("columns"),
                              table.heading(index));
