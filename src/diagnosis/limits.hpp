@@ -71,9 +71,6 @@ inline constexpr double kCorrelated = 1.2;  ///< design effect from which cycles
 /// known the difference is d^2 -+ 2 d sqrt(noise) in units in which the noise of the difference is one; 40 is beyond
 /// three standard deviations, with some room for the models themselves being approximations.
 inline constexpr double kDistinguishable = 40;
-/// The same of two laws where slow noise is counted, which leaves such models no room. More: in 1/f noise a law with a
-/// parameter less is taken though what it leaves is beyond the noise (twelve speeds, nothing hidden).
-inline constexpr double kDistinguishableInSlowNoise = 10;
 inline constexpr double kDistinguishableSize = 0.003;  ///< and by this part of the squares of the noise
 inline constexpr double kSizeOfParameter = 0.02;       ///< a longer ladder must earn as much for each parameter more
 

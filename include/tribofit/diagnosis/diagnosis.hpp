@@ -107,14 +107,16 @@ struct Confirmation {
 /// test as it would move the effect. The best one is added, with those that do as well as its group, until none is
 /// left. Where none passes, or one that explains little, candidates are tried two at a time, since each of two slow
 /// effects leaves the other as what looks like slow noise: both must pass, each beside the other, and their p-values
-/// are multiplied by the number of pairs as well. Effects that became redundant are dropped. Both base laws climb a
-/// ladder of their own; another law of the list joins them where it does as well with an effect less. The better or
-/// shorter ladder is reported. Free functions of each variable say where the error is, before and after.
+/// are multiplied by the number of pairs as well. Every law of the list stands beside the effects found so far at every
+/// step, and effects compete beside each: the law is chosen anew with every effect, and an effect is dropped without
+/// which some law does as well. The level of all friction, as that of break-away, may differ from cycle to cycle (random
+/// effects). Free functions of each variable say where the error is, before and after.
 struct Diagnosis {
   Verdict verdict = Verdict::sufficient;
   Law law = ExponentialLaw{};
   /// Laws that these data do not distinguish from it: with the effects of the last rung they predict held-out cycles as
-  /// well (p >= 0.05). None beside Coulomb friction, which is a special case of all.
+  /// well (p >= 0.05). None beside Coulomb friction, which is a special case of all. Over them the parameters of the last
+  /// rung have a range (FitParameter::range).
   std::vector<Law> rival_laws = {};
   std::vector<std::string> from_the_start = {};  ///< effects beside the law on every rung, as the command line has them
   std::vector<Share> where;                      ///< of the base law, largest first
