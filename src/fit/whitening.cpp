@@ -7,6 +7,7 @@
 #include "limits.hpp"
 #include "model_residuals.hpp"
 #include "statistics/linear_algebra.hpp"
+#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
 
@@ -50,8 +51,18 @@ Steps steps_of(const std::vector<double>& values, const std::vector<std::size_t>
   return out;
 }
 
+/// The same by the median of the steps: a few large ones are changes, no scatter.
+double usual_variance(const std::vector<double>& values, const std::vector<std::size_t>& stretch) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < values.size(); ++k) {
+    if (stretch[k] == stretch[k - 1]) steps.push_back(std::abs(values[k] - values[k - 1]));
+  }
+  const double typical = kSigmaPerMad * median(std::move(steps));
+  return 0.5 * typical * typical;
+}
+
 /// t^2/sigma^2 of the scatter of levels: what those of neighbours differ by. 0 where chance would make them differ as
-/// much.
+/// much. What comes in a few steps, as a change of friction or what a wrong law makes of other speeds does, is none.
 double level_scatter_of_slips(const std::vector<Products>& slips, const Observations& observations) {
   std::vector<double> levels;
   std::vector<std::size_t> stretch;
@@ -71,8 +82,9 @@ double level_scatter_of_slips(const std::vector<Products>& slips, const Observat
   // Math. Stat. 12 (1941) 367).
   const auto n = static_cast<double>(levels.size());
   const double noise = left / freedom, by_chance = noise * spread / n;
-  if (!(steps.variance > by_chance * (1 + kClearOfZero * std::sqrt(3 / steps.count)))) return 0;
-  return (steps.variance - by_chance) / noise;
+  const double variance = std::min(steps.variance, usual_variance(levels, stretch));
+  if (!(variance > by_chance * (1 + kClearOfZero * std::sqrt(3 / steps.count)))) return 0;
+  return (variance - by_chance) / noise;
 }
 
 /// delta_i of every slip by least squares, and what noise is left once it is taken out.
