@@ -4,136 +4,14 @@
 #include <tuple>
 #include <utility>
 
-#include "fit/starts.hpp"
 #include "hidden_pairs.hpp"
+#include "nearby_models.hpp"
+#include "stepwise_search.hpp"
 #include "limits.hpp"
 #include "tribofit/execution/parallel.hpp"
 #include "tribofit/execution/stop.hpp"
 
 namespace tribofit::diagnosis {
-
-namespace {
-
-/// The trial's model without one of its effects, fitted.
-Trial try_without(const DiagnosisContext& context, const Level& level, const Trial& full, std::string_view key,
-                  int threads = 1) {
-  Trial rest = without_effect(full, key);
-  return try_model(context, level, rest.model, std::move(rest.p), threads);
-}
-
-/// The model of `rest` with the effect of a candidate, at the values found when it was judged, at low resolution.
-Trial try_instead(const DiagnosisContext& context, const Trial& rest, const Candidate& candidate, const Trial& judged) {
-  FrictionModel model = with_effect(rest.model, candidate.effect);
-  const std::size_t offset = model.offset_of(candidate.info.key), added = model.count_of(candidate.info.key);
-  const auto from = judged.p.begin() + static_cast<std::ptrdiff_t>(judged.model.offset_of(candidate.info.key));
-  std::vector<double> start = rest.p;
-  start.insert(start.begin() + static_cast<std::ptrdiff_t>(offset), from, from + static_cast<std::ptrdiff_t>(added));
-  return try_model(context, context.coarse, model, std::move(start));
-}
-
-/// Another law with the effects of a trial, at low resolution; not usable where an effect cannot act on it. It is
-/// searched for from the data, and from the levels of the other law.
-Trial try_law(const DiagnosisContext& context, const Law& law, const Trial& known) {
-  std::vector<Effect> effects(known.model.effects().begin(), known.model.effects().end());
-  if (!std::ranges::all_of(effects, [&](const Effect& e) { return obstacle_on(law, e).empty(); })) return {};
-  const FrictionModel model(law, std::move(effects), known.model.records());
-  const Level& level = context.coarse;
-  std::vector<double> from_data = start_from_data(model, level.observations, level.bounds_of(model));
-  std::vector<double> from_levels = from_data;
-  for (std::size_t k = 0; k < model.parameters().size(); ++k) {
-    const std::string name = model.parameters()[k].full_name();
-    for (std::size_t i = 0; i < known.p.size(); ++i) {
-      if (known.model.parameters()[i].full_name() != name) continue;
-      from_levels[k] = known.p[i];
-      if (k >= model.base_count()) from_data[k] = known.p[i];
-    }
-  }
-  std::vector<std::vector<double>> starts = {std::move(from_data)};
-  if (!model.effects().empty()) starts.push_back(std::move(from_levels));
-  return try_model(context, level, model, nearest_if_several(level, model, {}, starts));
-}
-
-/// Friction falls with speed, or its rise levels off within the data: a straight rise is what a viscous part says.
-bool is_law_of_its_own(const DiagnosisContext& context, const Trial& trial) {
-  const Law& law = trial.model.law();
-  if (!trial.usable) return false;
-  const double fastest = context.fine.observations.fastest;
-  return constant_in_slip(law) || friction_at_rest(law, trial.p) > kinetic_friction(law, trial.p, fastest) ||
-         remaining_fall(law, trial.p, fastest).value_or(0) < limits::kStraight;
-}
-
-/// On a bound a law has become another one.
-bool is_on_bound(const Trial& trial) {
-  const auto last = trial.at_bound.begin() + static_cast<std::ptrdiff_t>(trial.model.base_count());
-  return std::find(trial.at_bound.begin(), last, true) != last;
-}
-
-/// What the largest structure beside a step would take away of the held-out squares; 0 where none is left.
-double largest_fall(const std::vector<Probe>& probes) {
-  const std::vector<Probe> structure = remaining_structure(probes);
-  return structure.empty() ? 0 : structure.front().fall;
-}
-
-/// A model at both resolutions.
-struct Fitted {
-  Trial fine, coarse;
-};
-
-/// What is known when a step begins.
-struct Progress {
-  std::vector<Fitted> laws;  ///< every law with the effects that were found
-  std::size_t best = 0;      ///< of them
-  std::vector<LadderStep> terms = {};  ///< without their trials
-  std::vector<CandidateResult> last = {};
-  std::vector<std::size_t> withdrawn = {};
-  bool finished = false;
-};
-
-/// A candidate that is named beside a law.
-struct Named {
-  std::size_t law = 0;
-  CandidateResult result;
-  std::vector<std::size_t> equivalent;
-  std::vector<CandidateResult> judged;
-};
-
-class Stepwise {
- public:
-  Stepwise(const DiagnosisContext& context, const std::vector<Candidate>& candidates, const Limits& least)
-      : context_(context), candidates_(candidates), least_(least) {}
-
-  void start(const std::vector<Law>& laws, const std::vector<Candidate>& from_the_start);
-  /// Adds the effect that leads, if one is named.
-  void extend(int most_effects);
-  /// What is done once, when nothing more is named.
-  void finish();
-  Ladder ladder() &&;
-
-  Progress now;
-  const Fitted& best() const { return now.laws[now.best]; }
-
- private:
-  const std::string& key(std::size_t candidate) const { return candidates_[candidate].info.key; }
-  std::vector<CandidateResult> judge_beside(std::size_t law, const Trial* to_beat = nullptr) const {
-    return judge_all(context_, now.laws[law].fine, now.laws[law].coarse, candidates_, least_, to_beat);
-  }
-  Fitted coarse_too(Trial fine) const;
-  std::size_t best_law() const;
-  void fit_laws(Fitted known);
-  Named leader_beside(std::size_t law, const Trial* to_beat = nullptr) const;
-  std::optional<Named> leader_of_all(bool structured);
-  bool improve(const Named& leader);
-  bool extend_by_pair(const Named* leader, double worth, int most_effects);
-  void add(const CandidateResult& result, std::vector<std::size_t> equivalent, std::vector<CandidateResult> judged);
-  bool drop_one();
-  bool exchange_one();
-  std::vector<CandidateResult> judge_instead(const LadderStep& term, const Trial& without) const;
-  std::vector<LadderStep> in_order() const;
-
-  const DiagnosisContext& context_;
-  const std::vector<Candidate>& candidates_;
-  const Limits& least_;
-};
 
 Fitted Stepwise::coarse_too(Trial fine) const {
   Trial coarse = fine.usable ? try_model(context_, context_.coarse, fine.model, fine.p) : Trial();
@@ -446,6 +324,8 @@ Ladder Stepwise::ladder() && {
   return out;
 }
 
+namespace {
+
 /// Whether a round comes to its end in time; where it does not, everything is as it was before.
 template <class Round>
 bool ends_in_time(const std::optional<std::chrono::steady_clock::time_point>& until, Progress& now, Round&& round) {
@@ -466,32 +346,6 @@ bool ends_in_time(const std::optional<std::chrono::steady_clock::time_point>& un
 }
 
 }  // namespace
-
-void withdraw(Ladder& ladder, double swinging) {
-  const double left = largest_fall(ladder.steps.back().probes);
-  if (left == 0 && swinging == 0) return;
-  for (std::size_t s = 1; s < ladder.steps.size(); ++s) {
-    const Trial &below = ladder.steps[s - 1].trial, &trial = ladder.steps[s].trial;
-    const double shown = largest_fall(ladder.steps[s - 1].probes);
-    const bool is_little = !ladder.steps[s].by_level && left >= limits::kLeastStructure * shown && left > 0 &&
-                           below.held_out_squares - trial.held_out_squares < limits::kWithdrawnPart * shown;
-    // What acts by the levels of break-away alone hardly shows in squares that are whitened against their scatter.
-    if (!is_little && !(below.plain_held_out - trial.plain_held_out < swinging)) continue;
-    for (std::size_t k = s; k < ladder.steps.size(); ++k) ladder.withdrawn.push_back(*ladder.steps[k].added);
-    ladder.last = ladder.steps[s].judged;
-    ladder.steps.resize(s);
-    return;
-  }
-}
-
-std::vector<Law> competing_laws(const std::vector<Law>& given, std::span<const Effect> effects) {
-  if (given.size() == 1) return given;
-  std::vector<Law> laws;
-  for (const Law& law : law_catalogue()) {
-    if (std::ranges::all_of(effects, [&](const Effect& e) { return obstacle_on(law, e).empty(); })) laws.push_back(law);
-  }
-  return laws;
-}
 
 Ladder climb(const DiagnosisContext& context, const std::vector<Law>& laws,
              const std::vector<Candidate>& from_the_start, const std::vector<Candidate>& candidates,

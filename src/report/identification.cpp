@@ -40,15 +40,15 @@ std::string verdict_on(const Fit& fit, const std::string& unit) {
                      percent(fit.error.mean_relative), remains);
 }
 
-/// A free function shows that something is missing, whatever the noise floor.
+/// A free function finds something, whatever the noise floor.
 std::string missing(const Identification& r) {
   const Fit& fit = r.fits[r.best];
   const auto level = [&](double value) { return significant(value, 3) + unit_behind(friction_unit(r.motion)); };
   std::vector<std::string_view> phrases;
   for (const std::string& name : r.remaining) phrases.push_back(phrase_of(name));
   return fmt::format(
-      "Something is missing: what the {} law leaves varies with {}, beyond chance (held-out error {}, noise floor {}, "
-      "typical error {}). An effect is not modelled.",
+      "An effect is not modelled: what the {} law leaves varies with {}, beyond chance (held-out error {}, noise floor "
+      "{}, typical error {}).",
       fit.model.name(), fmt::join(phrases, " and with "), level(fit.error.held_out_rmse), level(fit.floor.rmse),
       percent(fit.error.mean_relative));
 }
