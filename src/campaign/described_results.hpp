@@ -100,8 +100,8 @@ constexpr auto description(const ResultParameter*) {
   return described("name", &P::name, "value", &P::value, "std_error", &P::std_error, "ci95",
                    ends(&P::lower95, &P::upper95), "unit", &P::unit, "effect", or_null(&P::effect), "systematic_error",
                    or_null(&P::systematic), "profile_ci95", ends(&P::profile_lower95, &P::profile_upper95), "range",
-                   ends(&P::range_lower, &P::range_upper), "start", &P::start, "bounds", ends(&P::lower, &P::upper), "at_bound", &P::at_bound, "determined",
-                   &P::determined);
+                   ends(&P::range_lower, &P::range_upper), "start", &P::start, "bounds", ends(&P::lower, &P::upper),
+                   "at_bound", &P::at_bound, "determined", &P::determined);
 }
 
 constexpr auto description(const ResultFit::Correlated*) {
@@ -116,9 +116,8 @@ constexpr auto description(const ErrorFigures*) {
 
 /// The parts of the noise floor.
 constexpr auto description(const Floor*) {
-  return described("noise", &Floor::noise, "scatter", &Floor::scatter, "level_scatter",
-                   &Floor::level_scatter, "slow_noise", &Floor::slow_noise, "source",
-                   &Floor::source);
+  return described("noise", &Floor::noise, "scatter", &Floor::scatter, "level_scatter", &Floor::level_scatter,
+                   "slow_noise", &Floor::slow_noise, "source", &Floor::source);
 }
 
 constexpr auto description(const ResultFit*) {

@@ -62,7 +62,8 @@ constexpr auto description(const Observations::SlipObservation*) {
 }
 
 constexpr auto description(const RecordNoise*) {
-  return described("flicker", condensed_number(within(&RecordNoise::flicker, &FlickerNoise::power)), "samples",
+  return described("level_scatter", condensed_number(&RecordNoise::level_scatter), "flicker",
+                   condensed_number(within(&RecordNoise::flicker, &FlickerNoise::power)), "samples",
                    condensed_number(within(&RecordNoise::flicker, &FlickerNoise::samples)));
 }
 

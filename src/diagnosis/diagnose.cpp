@@ -12,6 +12,7 @@
 #include "fit/spectral_lines.hpp"
 #include "imitations.hpp"
 #include "limits.hpp"
+#include "nearby_models.hpp"
 #include "record_evidence.hpp"
 #include "stepwise.hpp"
 #include "tribofit/diagnosis/diagnosis.hpp"
@@ -142,8 +143,8 @@ std::vector<Fit> rival_fits(const Ladder& ladder, const Fit& fitted, const Diagn
     const Trial& other = ladder.rivals[k];
     FitOptions warm = options;
     if (!other.model.effects().empty()) warm.start = other.p;
-    rivals[k] = fit_model(other.model, context.records, observations_for(other.model, context.records), instruments,
-                          warm);
+    rivals[k] =
+        fit_model(other.model, context.records, observations_for(other.model, context.records), instruments, warm);
   });
   std::erase_if(rivals, [&](const Fit& rival) {
     if (!rival.converged) return true;
@@ -158,7 +159,8 @@ void add_ranges(const std::vector<Fit>& rivals, Fit& fit) {
   for (FitParameter& own : fit.parameters) {
     for (const Fit& rival : rivals) {
       const auto other = std::ranges::find_if(rival.parameters, [&](const FitParameter& p) {
-        return p.parameter.name == own.parameter.name && p.effect == own.effect && p.parameter.unit == own.parameter.unit;
+        return p.parameter.name == own.parameter.name && p.effect == own.effect &&
+               p.parameter.unit == own.parameter.unit;
       });
       if (other == rival.parameters.end()) continue;
       if (!own.range) own.range = {own.lower95, own.upper95};
@@ -350,16 +352,16 @@ Diagnosed diagnose(std::span<const Record> records, const std::vector<Law>& give
   return out;
 }
 
-std::vector<std::string> remaining_over(std::span<const Record> records, const Fit& fit, int threads) {
+std::vector<ResidualVariable> remaining_over(std::span<const Record> records, const Fit& fit, int threads) {
   if (!fit.converged || count_cycles(records) < limits::kFewestCycles) return {};
   const RecordEvidence evidence(records, threads);
   const DiagnosisContext& context = evidence.context;
   const Trial fine = try_model(context, context.fine, fit.model, fit.values(), threads);
   if (!fine.usable) return {};
   const Trial coarse = try_model(context, context.coarse, fit.model, fine.p, threads);
-  std::vector<std::string> out;
+  std::vector<ResidualVariable> out;
   const auto probes = probe_all(context, coarse, fine, residual_of(context, fine));
-  for (const Probe& probe : remaining_structure(probes, context.shared)) out.emplace_back(to_string(probe.variable));
+  for (const Probe& probe : remaining_structure(probes, context.shared)) out.push_back(probe.variable);
   return out;
 }
 

@@ -79,8 +79,8 @@ bool is_far_behind(const DiagnosisContext& context, double behind, double fallen
 double size_of_fall(const DiagnosisContext& context, const Trial& poorer, const Trial& richer);
 
 /// The first predicts held-out cycles better than the second: by more than a least size, which each of its further
-/// parameters must earn, and by more than chance: of their losses cycle by cycle, with a long-run variance, or of the fall
-/// of the squares, with slow noise as the record shows it. With more effects by plain squares too.
+/// parameters must earn, and by more than chance: of their losses cycle by cycle, with a long-run variance, or of the
+/// fall of the squares, with slow noise as the record shows it. With more effects by plain squares too.
 bool beats(const DiagnosisContext& context, const Trial& first, const Trial& second);
 
 /// Every testable candidate beside the model so far (top, and the same at low resolution). to_beat: a model at low

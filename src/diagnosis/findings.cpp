@@ -239,7 +239,8 @@ void describe_place(const FindingInputs& in, std::size_t k, EffectFinding& findi
 /// Why neither these data nor this law can show an effect; empty where they can.
 std::string obstacle_of(const FindingInputs& in, std::size_t k) {
   const Candidate& candidate = in.all[k];
-  return candidate.untestable.empty() ? obstacle_on(in.ladder.top().model.law(), candidate.effect) : candidate.untestable;
+  return candidate.untestable.empty() ? obstacle_on(in.ladder.top().model.law(), candidate.effect)
+                                      : candidate.untestable;
 }
 
 /// k: the candidate that stands for the effect.

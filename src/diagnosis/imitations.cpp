@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "fit/errors.hpp"
 #include "limits.hpp"
 #include "tribofit/kinematics/health.hpp"
 #include "tribofit/output/digits.hpp"
@@ -103,8 +104,7 @@ double left_by_corrections(std::span<const Record> records, const Observations& 
 
 std::string imitated_by(std::span<const Record> records, SketchView view) {
   for (const std::string& check : problems_of(records)) {
-    if (imitates(check, place_of(view)))
-      return fmt::format("the check {} reports a problem that looks like it", check);
+    if (imitates(check, place_of(view))) return fmt::format("the check {} reports a problem that looks like it", check);
   }
   return {};
 }
@@ -125,20 +125,11 @@ struct Levels {
   std::vector<double> break_away, slip;
 };
 
-double fast_friction(const Motion& motion, const Cycle& cycle) {
-  double sum = 0, count = 0;
-  for (std::size_t i = cycle.slip.begin; i < cycle.slip.end; ++i) {
-    if (cycle.direction * motion.relative_velocity[i] < limits::kFastSlip * cycle.peak_velocity) continue;
-    sum += cycle.direction * motion.friction[i], count += 1;
-  }
-  return sum / count;
-}
-
 void add_levels(const Record& record, Levels& levels) {
   std::vector<double> break_away, slip;
   for (const Cycle& cycle : record.segmentation->cycles) {
     if (!record.segmentation->is_selected(cycle) || !(cycle.stick.size() > 0) || !cycle.slip_complete) continue;
-    const double fast = fast_friction(*record.motion, cycle);
+    const double fast = friction_between(*record.motion, cycle, limits::kFastSlip * cycle.peak_velocity, HUGE_VAL);
     if (!std::isfinite(cycle.break_away_friction) || !std::isfinite(fast)) continue;
     break_away.push_back(cycle.break_away_friction), slip.push_back(fast);
   }

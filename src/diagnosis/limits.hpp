@@ -128,9 +128,10 @@ inline constexpr double kFarAboveFloor = 1.5;  ///< times the noise floor, from 
 inline constexpr double kFarAboveAfterEffects = 2;
 /// Runs that are diagnosed by themselves where all together are not described: more cost time and say little more.
 inline constexpr std::size_t kMostSingleRuns = 8;
-inline constexpr double kClearOfFloor = 2;   ///< standard errors of the held-out error, from which it is not chance
-inline constexpr double kSlowestLine = 15;   ///< slip times of a period: a line as slow is structure over time
-inline constexpr int kHarmonicsOfAngle = 6;  ///< of a turn: a disc's faults are low ones, and more cost evidence
+inline constexpr double kClearOfFloor = 2;     ///< standard errors of the held-out error, from which it is not chance
+inline constexpr double kSwingsOfSlip = 0.35;  ///< a slip, seen in levels of slips: half is where they alias
+inline constexpr double kSlowestLine = 15;     ///< slip times of a period: a line as slow is structure over time
+inline constexpr int kHarmonicsOfAngle = 6;    ///< of a turn: a disc's faults are low ones, and more cost evidence
 inline constexpr double kFormPart = 0.6;  ///< of what a free function explains, for a closed form to be worth offering
 
 // ---- a load that was not recorded

@@ -5,7 +5,7 @@
 
 #include "fit/starts.hpp"
 #include "limits.hpp"
-#include "stepwise.hpp"
+#include "tribofit/execution/parallel.hpp"
 
 namespace tribofit::diagnosis {
 
@@ -44,39 +44,47 @@ Trial try_law(const DiagnosisContext& context, const Law& law, const Trial& know
   return try_model(context, level, model, nearest_if_several(level, model, {}, starts));
 }
 
-bool is_law_of_its_own(const DiagnosisContext& context, const Trial& trial) {
+LawStanding standing_of(const DiagnosisContext& context, const Trial& trial) {
+  if (!trial.usable) return LawStanding::another;
   const Law& law = trial.model.law();
-  if (!trial.usable) return false;
   const double fastest = context.fine.observations.fastest;
-  return constant_in_slip(law) || friction_at_rest(law, trial.p) > kinetic_friction(law, trial.p, fastest) ||
-         remaining_fall(law, trial.p, fastest).value_or(0) < limits::kStraight;
-}
-
-bool is_on_bound(const Trial& trial) {
+  const bool rises = !constant_in_slip(law) && friction_at_rest(law, trial.p) < kinetic_friction(law, trial.p, fastest);
+  if (rises && remaining_fall(law, trial.p, fastest)) return LawStanding::another;
   const auto last = trial.at_bound.begin() + static_cast<std::ptrdiff_t>(trial.model.base_count());
-  return std::find(trial.at_bound.begin(), last, true) != last;
+  const bool on_bound = std::find(trial.at_bound.begin(), last, true) != last;
+  return rises || on_bound ? LawStanding::doubtful : LawStanding::sound;
 }
 
-double largest_fall(const std::vector<Probe>& probes) {
-  const std::vector<Probe> structure = remaining_structure(probes);
-  return structure.empty() ? 0 : structure.front().fall;
-}
-
-void withdraw(Ladder& ladder, double swinging) {
-  const double left = largest_fall(ladder.steps.back().probes);
-  if (left == 0 && swinging == 0) return;
-  for (std::size_t s = 1; s < ladder.steps.size(); ++s) {
-    const Trial &below = ladder.steps[s - 1].trial, &trial = ladder.steps[s].trial;
-    const double shown = largest_fall(ladder.steps[s - 1].probes);
-    const bool is_little = !ladder.steps[s].by_level && left >= limits::kLeastStructure * shown && left > 0 &&
-                           below.held_out_squares - trial.held_out_squares < limits::kWithdrawnPart * shown;
-    // What acts by the levels of break-away alone hardly shows in squares that are whitened against their scatter.
-    if (!is_little && !(below.plain_held_out - trial.plain_held_out < swinging)) continue;
-    for (std::size_t k = s; k < ladder.steps.size(); ++k) ladder.withdrawn.push_back(*ladder.steps[k].added);
-    ladder.last = ladder.steps[s].judged;
-    ladder.steps.resize(s);
-    return;
+std::vector<CandidateResult> judge_near(const DiagnosisContext& context, const LadderStep& term, const Trial& full,
+                                        const Trial& coarse_full, const Trial& without,
+                                        const std::vector<Candidate>& candidates, const Limits& least) {
+  const std::vector<std::string> present = without.model.effect_keys();
+  const auto added = std::ranges::find(term.judged, *term.added, &CandidateResult::candidate);
+  std::vector<const CandidateResult*> rivals;
+  for (const CandidateResult& judged : term.judged) {
+    const Candidate& candidate = candidates[judged.candidate];
+    const bool near = added == term.judged.end() || judged.fall > limits::kRivalPart * added->fall;
+    const bool is_present = std::ranges::find(present, candidate.info.key) != present.end();
+    if (judged.trial.usable && judged.plausible && near && !is_present &&
+        candidate.info.key != candidates[*term.added].info.key && without.model.acts_with(candidate.effect)) {
+      rivals.push_back(&judged);
+    }
   }
+  std::vector<CandidateResult> out(rivals.size() + 1);
+  out[0] = compare(context, context.fine, without, full, candidates[*term.added], 1, least);
+  out[0].candidate = *term.added;
+  const Trial rest = try_model(context, context.coarse, without.model, without.p);
+  run_tasks(rivals.size(), context.threads, [&](std::size_t r) {
+    const std::size_t k = rivals[r]->candidate;
+    const Trial coarse = try_instead(context, rest, candidates[k], rivals[r]->trial);
+    const double behind = coarse.held_out_squares - coarse_full.held_out_squares;
+    out[r + 1].candidate = k;
+    if (!coarse.usable || is_far_behind(context, behind, rest.held_out_squares - coarse_full.held_out_squares)) return;
+    out[r + 1] = compare(context, context.fine, without, try_model(context, context.fine, coarse.model, coarse.p),
+                         candidates[k], 1, least);
+    out[r + 1].candidate = k;
+  });
+  return out;
 }
 
 std::vector<Law> competing_laws(const std::vector<Law>& given, std::span<const Effect> effects) {

@@ -1,10 +1,11 @@
 #pragma once
 
+#include <span>
 #include <string_view>
 #include <vector>
 
-#include "evidence.hpp"
-#include "probes.hpp"
+#include "candidates.hpp"
+#include "ladder.hpp"
 #include "trial.hpp"
 
 namespace tribofit::diagnosis {
@@ -20,13 +21,22 @@ Trial try_instead(const DiagnosisContext& context, const Trial& rest, const Cand
 /// searched for from the data, and from the levels of the other law.
 Trial try_law(const DiagnosisContext& context, const Law& law, const Trial& known);
 
-/// Friction falls with speed, or its rise levels off within the data: a straight rise is what a viscous part says.
-bool is_law_of_its_own(const DiagnosisContext& context, const Trial& trial);
+/// Whether a fitted law is what its name says.
+enum class LawStanding {
+  sound,
+  doubtful,  ///< it rises with speed, or is on a bound, where laws become others
+  another    ///< it rises from one of its two levels to the other, which is what constant and viscous friction say; or
+             ///< it could not be fitted
+};
+LawStanding standing_of(const DiagnosisContext& context, const Trial& trial);
 
-/// On a bound a law has become another one.
-bool is_on_bound(const Trial& trial);
+/// The effect of a term and those that explained nearly as much when it was added, each beside the model without it.
+/// full: the model with it, at both resolutions.
+std::vector<CandidateResult> judge_near(const DiagnosisContext& context, const LadderStep& term, const Trial& full,
+                                        const Trial& coarse_full, const Trial& without,
+                                        const std::vector<Candidate>& candidates, const Limits& least);
 
-/// What the largest structure that free functions found would take away of the held-out squares; 0 where none is left.
-double largest_fall(const std::vector<Probe>& probes);
+/// Laws that compete: the one that was chosen, or every law of the list on which the effects can act.
+std::vector<Law> competing_laws(const std::vector<Law>& given, std::span<const Effect> effects);
 
 }  // namespace tribofit::diagnosis

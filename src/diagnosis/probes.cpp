@@ -60,7 +60,7 @@ double middle_time(const Observations& observations, const Observations::SlipObs
 /// Columns of a probe for slip k: one row a value and one for the break-away.
 using Columns = ModelResiduals::FurtherColumns;
 
-/// A design in preparation: what all builders need of the coarse trial.
+/// What a model says of every slip.
 struct ProbeInputs {
   const Observations& observations;
   std::vector<std::vector<double>> mu;  ///< |model| at every value of each slip
@@ -94,7 +94,7 @@ Columns columns_of(const Observations& observations, Eigen::Index count, Row row
   };
 }
 
-Probe over_velocity(const DiagnosisContext& context, const Level& level, const Trial& trial) {
+std::optional<Probe> over_velocity(const DiagnosisContext& context, const Level& level, const Trial& trial) {
   const Observations& o = level.observations;
   const LinesBetweenKnots lines(even_knots(0, o.fastest, 12));
   Probe probe;
@@ -110,7 +110,7 @@ Probe over_velocity(const DiagnosisContext& context, const Level& level, const T
   return probe;
 }
 
-Probe over_branch(const DiagnosisContext& context, const Level& level, const Trial& trial) {
+std::optional<Probe> over_branch(const DiagnosisContext& context, const Level& level, const Trial& trial) {
   const Observations& o = level.observations;
   const LinesBetweenKnots lines(even_knots(0, o.fastest, 6));
   Probe probe;
@@ -143,6 +143,16 @@ Columns scaling(const ProbeInputs& inputs, Eigen::Index count, Functions functio
   });
 }
 
+/// The fastest swing that levels of slips follow [Hz]: what is faster shows within slips, what is slower between them.
+double fastest_swing(const Observations& observations) {
+  std::vector<double> times;
+  for (const auto& range : observations.slips) {
+    if (range.record == 0 && range.end > range.begin) times.push_back(middle_time(observations, range));
+  }
+  const double span = times.empty() ? 0 : times.back() - times.front();
+  return span > 0 ? limits::kSwingsOfSlip * static_cast<double>(times.size()) / span : 0;
+}
+
 /// Period of the strongest swing of the levels of the slips over time, and the number of periods looked at.
 std::pair<double, double> strongest_swing(const ProbeInputs& inputs) {
   const Observations& o = inputs.observations;
@@ -167,7 +177,7 @@ std::pair<double, double> strongest_swing(const ProbeInputs& inputs) {
   if (times.size() < limits::kFewestCycles) return {0, 1};
   mean /= total;
   const double span = times.back() - times.front();
-  const double highest = 0.35 * static_cast<double>(times.size()) / span;
+  const double highest = fastest_swing(o);
   const double step = 0.1 / span;
   // From one frequency to the next every phase turns on by a step of its own.
   std::vector<std::complex<double>> at(times.size()), turn(times.size());
@@ -193,10 +203,11 @@ std::pair<double, double> strongest_swing(const ProbeInputs& inputs) {
   return {frequency > 0 ? 1 / frequency : 0, highest * span};
 }
 
-Probe over_time(const DiagnosisContext& context, const Trial& trial, const ProbeInputs& inputs) {
-  const Observations& o = context.coarse.observations;
+std::optional<Probe> over_time(const DiagnosisContext& context, const Level& level, const Trial& trial) {
+  const Observations& o = level.observations;
   Probe probe;
   probe.variable = ResidualVariable::time;
+  const ProbeInputs inputs = probe_inputs(o, trial);
   const auto [period, places] = strongest_swing(inputs);
   std::vector<double> lasts(context.records.size(), 0.0);
   for (const auto& range : o.slips) lasts[range.record] = std::max(lasts[range.record], o.time[range.end - 1]);
@@ -214,8 +225,8 @@ Probe over_time(const DiagnosisContext& context, const Trial& trial, const Probe
     }
     return out;
   };
-  const Eigen::VectorXd found = judge_probe(context, context.coarse, trial,
-                                            scaling(inputs, kCosines + (swings ? 2 : 0), functions), places, probe);
+  const Eigen::VectorXd found =
+      judge_probe(context, level, trial, scaling(inputs, kCosines + (swings ? 2 : 0), functions), places, probe);
   if (swings && found.size() == kCosines + 2) {
     probe.period = period;
     probe.value = {std::hypot(found(kCosines), found(kCosines + 1)), std::atan2(found(kCosines), found(kCosines + 1))};
@@ -223,8 +234,8 @@ Probe over_time(const DiagnosisContext& context, const Trial& trial, const Probe
   return probe;
 }
 
-std::optional<Probe> over_angle(const DiagnosisContext& context, const Trial& trial, const ProbeInputs& inputs) {
-  const Observations& o = context.coarse.observations;
+std::optional<Probe> over_angle(const DiagnosisContext& context, const Level& level, const Trial& trial) {
+  const Observations& o = level.observations;
   if (o.angle.empty()) return std::nullopt;
   const auto [least, most] = std::minmax_element(o.angle.begin(), o.angle.end());
   if (*most - *least < 2 * (2 * std::numbers::pi)) return std::nullopt;
@@ -233,6 +244,7 @@ std::optional<Probe> over_angle(const DiagnosisContext& context, const Trial& tr
   const Eigen::Index harmonics = std::max<Eigen::Index>(1, limits::kHarmonicsOfAngle / records);
   Probe probe;
   probe.variable = ResidualVariable::angle;
+  const ProbeInputs inputs = probe_inputs(o, trial);
   const auto functions = [&o, records, harmonics](std::size_t k, std::size_t i) {
     const auto& range = o.slips[k];
     const double angle = o.angle[std::min(range.begin + i, range.end - 1)];
@@ -244,13 +256,13 @@ std::optional<Probe> over_angle(const DiagnosisContext& context, const Trial& tr
     }
     return out;
   };
-  judge_probe(context, context.coarse, trial, scaling(inputs, 2 * harmonics * records, functions), 1, probe);
+  judge_probe(context, level, trial, scaling(inputs, 2 * harmonics * records, functions), 1, probe);
   return probe;
 }
 
 /// Knots are closer just after a reversal, where what remembers it changes most.
-std::optional<Probe> over_reversal_distance(const DiagnosisContext& context, const Trial& trial) {
-  const Observations& o = context.coarse.observations;
+std::optional<Probe> over_reversal_distance(const DiagnosisContext& context, const Level& level, const Trial& trial) {
+  const Observations& o = level.observations;
   if (o.reversal_distance.empty()) return std::nullopt;
   const double longest = *std::max_element(o.reversal_distance.begin(), o.reversal_distance.end());
   std::vector<double> knots = even_knots(0, 1, 9);
@@ -262,26 +274,26 @@ std::optional<Probe> over_reversal_distance(const DiagnosisContext& context, con
     const auto& range = o.slips[k];
     return lines(o.reversal_distance[std::min(range.begin + i, range.end - 1)]);
   };
-  const Eigen::VectorXd found =
-      judge_probe(context, context.coarse, trial, columns_of(o, lines.count(), row), 1, probe);
+  const Eigen::VectorXd found = judge_probe(context, level, trial, columns_of(o, lines.count(), row), 1, probe);
   probe.at = lines.knots();
   probe.value.assign(found.data(), found.data() + found.size());
   return probe;
 }
 
-std::optional<Probe> over_load(const DiagnosisContext& context, const Trial& trial, const ProbeInputs& inputs) {
-  const Observations& o = context.coarse.observations;
+std::optional<Probe> over_load(const DiagnosisContext& context, const Level& level, const Trial& trial) {
+  const Observations& o = level.observations;
   if (o.load.empty()) return std::nullopt;
   const auto [least, most] = std::minmax_element(o.load.begin(), o.load.end());
   if (*most - *least < limits::kLeastLoadSpread * std::abs(o.mean_load)) return std::nullopt;
   const LinesBetweenKnots lines(even_knots(*least, *most, 4));
   Probe probe;
   probe.variable = ResidualVariable::load;
+  const ProbeInputs inputs = probe_inputs(o, trial);
   const auto functions = [&](std::size_t k, std::size_t i) {
     const auto& range = o.slips[k];
     return lines(o.load[std::min(range.begin + i, range.end - 1)]);
   };
-  judge_probe(context, context.coarse, trial, scaling(inputs, lines.count(), functions), 1, probe);
+  judge_probe(context, level, trial, scaling(inputs, lines.count(), functions), 1, probe);
   return probe;
 }
 
@@ -295,8 +307,8 @@ std::vector<double> log_stick_times(const Observations& o) {
   return out;
 }
 
-std::optional<Probe> over_stick_time(const DiagnosisContext& context, const Trial& trial) {
-  const Observations& o = context.coarse.observations;
+std::optional<Probe> over_stick_time(const DiagnosisContext& context, const Level& level, const Trial& trial) {
+  const Observations& o = level.observations;
   const std::vector<double> given = log_stick_times(o);
   std::vector<double> sticks;
   for (const double x : given) {
@@ -318,7 +330,7 @@ std::optional<Probe> over_stick_time(const DiagnosisContext& context, const Tria
     const double fade = at_rest ? 1 : break_away_left(trial.model.law(), trial.p, speed);
     return Eigen::RowVectorXd((known ? fade : 0.0) * lines(known ? given[k] : low));
   };
-  judge_probe(context, context.coarse, trial, columns_of(o, lines.count(), row), 1, probe);
+  judge_probe(context, level, trial, columns_of(o, lines.count(), row), 1, probe);
   return probe;
 }
 
@@ -326,7 +338,8 @@ std::optional<Probe> over_frequency(const DiagnosisContext& context, const Trial
                                     std::span<const double> residual) {
   const Observations& o = context.fine.observations;
   const SpectralLines found = strongest_lines(
-      context.records[0], o, residual, 1 / (limits::kSlowestLine * o.scales.slip_time), 0.4 * observation_rate(o));
+      context.records[0], o, residual, std::max(fastest_swing(o), 1 / (limits::kSlowestLine * o.scales.slip_time)),
+      0.4 * observation_rate(o));
   if (found.frequencies.empty()) return std::nullopt;
   const double frequency = found.frequencies.front();
   Probe probe;
@@ -346,35 +359,26 @@ std::optional<Probe> over_frequency(const DiagnosisContext& context, const Trial
   return probe;
 }
 
-/// A probe of what changes within a slip. Means over a good part of a slip are off themselves, by more than what is
-/// left where a memory changes faster than they follow: what they show is judged again over shorter ones.
-template <class Over>
-Probe in_detail(const Over& over, const DiagnosisContext& context, const Trial& coarse, const Trial& fine) {
-  Probe probe = over(context, context.coarse, coarse);
-  const bool matters = probe.fall > 0 && probe.size > limits::kLeastStructure;
-  return matters && !fine.model.effects().empty() ? over(context, context.fine, fine) : probe;
-}
-
 }  // namespace
 
 std::vector<Probe> probe_all(const DiagnosisContext& context, const Trial& coarse, const Trial& fine,
                              std::span<const double> residual) {
-  const ProbeInputs inputs = probe_inputs(context.coarse.observations, coarse);
-  const auto velocity = [&] { return in_detail(over_velocity, context, coarse, fine); };
-  std::vector<std::function<std::optional<Probe>()>> all = {velocity,
-                                                            [&] { return over_load(context, coarse, inputs); }};
+  using Over = std::optional<Probe> (*)(const DiagnosisContext&, const Level&, const Trial&);
+  std::vector<Over> all = {over_velocity, over_load};
   if (!are_points(context.records)) {
-    all = {velocity,
-           [&] { return in_detail(over_branch, context, coarse, fine); },
-           [&] { return over_time(context, coarse, inputs); },
-           [&] { return over_angle(context, coarse, inputs); },
-           [&] { return over_stick_time(context, coarse); },
-           [&] { return over_load(context, coarse, inputs); },
-           [&] { return over_reversal_distance(context, coarse); },
-           [&] { return over_frequency(context, fine, residual); }};
+    all = {over_velocity, over_branch, over_time, over_angle, over_stick_time, over_load, over_reversal_distance};
   }
-  std::vector<std::optional<Probe>> found(all.size());
-  run_tasks(all.size(), context.threads, [&](std::size_t k) { found[k] = all[k](); });
+  std::vector<std::optional<Probe>> found(all.size() + 1);
+  run_tasks(found.size(), context.threads, [&](std::size_t k) {
+    if (k == all.size()) {
+      if (!are_points(context.records)) found[k] = over_frequency(context, fine, residual);
+      return;
+    }
+    found[k] = all[k](context, context.coarse, coarse);
+    // What matters is judged as models are: means over a good part of a slip are off themselves, and have other noise.
+    const bool matters = found[k] && found[k]->fall > 0 && found[k]->size > limits::kLeastStructure;
+    if (matters) found[k] = all[k](context, context.fine, fine);
+  });
   std::vector<Probe> out;
   for (std::optional<Probe>& probe : found) {
     if (probe) out.push_back(std::move(*probe));

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "trial.hpp"
-#include "tribofit/diagnosis/residual_variable.hpp"
+#include "tribofit/fit/residual_variable.hpp"
 
 namespace tribofit::diagnosis {
 

@@ -116,10 +116,10 @@ std::size_t finest_values(std::size_t cycles) {
 }
 
 RecordEvidence::RecordEvidence(std::span<const Record> records, int threads, std::vector<GivenParameter> known)
-    : noises_(noises_of(records, threads)),
-      floor(floor_of(records, noises_)),
-      fine(observe_all(records, noises_, all_channels(records), fine_values(count_cycles(records)), floor.noise)),
-      coarse(observe_all(records, noises_, all_channels(records), coarse_values(records, count_cycles(records), floor),
+    : noises(noises_of(records, threads)),
+      floor(floor_of(records, noises)),
+      fine(observe_all(records, noises, all_channels(records), fine_values(count_cycles(records)), floor.noise)),
+      coarse(observe_all(records, noises, all_channels(records), coarse_values(records, count_cycles(records), floor),
                          floor.noise)),
       context(context_of(records, fine, coarse, floor, threads, std::move(known))) {}
 

@@ -38,10 +38,7 @@ class RecordEvidence {
   RecordEvidence(const RecordEvidence&) = delete;
   RecordEvidence& operator=(const RecordEvidence&) = delete;
 
- private:
-  std::vector<RecordNoise> noises_;
-
- public:
+  const std::vector<RecordNoise> noises;
   const Floor floor;
   const Observations fine, coarse;
   const DiagnosisContext context;

@@ -35,7 +35,7 @@ class CandidateScreening {
   const Limits& least_passing_;
   LeastFalls least_falls_;
   double best_elsewhere_ = std::numeric_limits<double>::infinity();  ///< held-out squares at low resolution
-  double next_ = 0;  ///< what may be added before a line
+  double next_ = 0;                                                  ///< what may be added before a line
   std::vector<CandidateResult> out_;
   std::vector<SearchStart> search_starts_;
   std::vector<double> at_low_;  ///< held-out squares at low resolution

@@ -1,37 +1,104 @@
 #include "stepwise.hpp"
 
 #include <algorithm>
-#include <tuple>
+#include <cmath>
 #include <utility>
 
 #include "hidden_pairs.hpp"
-#include "nearby_models.hpp"
-#include "stepwise_search.hpp"
 #include "limits.hpp"
+#include "nearby_models.hpp"
 #include "tribofit/execution/parallel.hpp"
 #include "tribofit/execution/stop.hpp"
 
 namespace tribofit::diagnosis {
+
+namespace {
+
+/// A model at both resolutions.
+struct Fitted {
+  Trial fine, coarse;
+};
+
+/// What is known when a step begins.
+struct Progress {
+  std::vector<Fitted> laws;            ///< every law with the effects that were found
+  std::size_t best = 0;                ///< of them
+  std::vector<LadderStep> terms = {};  ///< without their trials
+  std::vector<CandidateResult> last = {};
+  std::vector<std::size_t> withdrawn = {};
+  bool finished = false;
+};
+
+/// A candidate that is named beside a law.
+struct Named {
+  std::size_t law = 0;
+  CandidateResult result;
+  std::vector<std::size_t> equivalent;
+  std::vector<CandidateResult> judged;
+};
+
+/// The search of climb(), step by step.
+class Stepwise {
+ public:
+  Stepwise(const DiagnosisContext& context, const std::vector<Candidate>& candidates, const Limits& least)
+      : context_(context), candidates_(candidates), least_(least) {}
+
+  void start(const std::vector<Law>& laws, const std::vector<Candidate>& from_the_start);
+  /// Adds the effect that leads, if one is named.
+  void extend(int most_effects);
+  /// What is done once, when nothing more is named.
+  void finish();
+  Ladder ladder() &&;
+
+  Progress now;
+  const Fitted& best() const { return now.laws[now.best]; }
+
+ private:
+  const std::string& key(std::size_t candidate) const { return candidates_[candidate].info.key; }
+  std::vector<CandidateResult> judge_beside(std::size_t law, const Trial* to_beat = nullptr) const {
+    return judge_all(context_, now.laws[law].fine, now.laws[law].coarse, candidates_, least_, to_beat);
+  }
+  Fitted coarse_too(Trial fine) const;
+  std::size_t best_law() const;
+  void fit_laws(Fitted known);
+  Named leader_beside(std::size_t law, const Trial* to_beat = nullptr) const;
+  std::optional<Named> leader_of_all(bool is_noise);
+  bool improve(const Named& leader);
+  bool extend_by_pair(const Named* leader, double worth, int most_effects);
+  void add_term(const CandidateResult& result, std::vector<std::size_t> equivalent,
+                std::vector<CandidateResult> judged);
+  bool drop_one();
+  bool exchange_one();
+  std::vector<LadderStep> in_order() const;
+
+  const DiagnosisContext& context_;
+  const std::vector<Candidate>& candidates_;
+  const Limits& least_;
+};
 
 Fitted Stepwise::coarse_too(Trial fine) const {
   Trial coarse = fine.usable ? try_model(context_, context_.coarse, fine.model, fine.p) : Trial();
   return {std::move(fine), std::move(coarse)};
 }
 
-/// The law that predicts best; a simpler one that does as well. One that has become another law only if none is left.
+/// The law that predicts best, or a simpler one that does as well. A doubtful one only where no sound one explains half
+/// as much, one that has become another only where there is none.
 std::size_t Stepwise::best_law() const {
-  std::size_t lowest = 0;
   const auto rank = [&](std::size_t k) {
     const Trial& trial = now.laws[k].fine;
-    return std::tuple(!trial.usable, !is_law_of_its_own(context_, trial), trial.held_out_squares);
+    const LawStanding standing = standing_of(context_, trial);
+    const double left = trial.usable ? trial.held_out_squares - context_.noise_squares() : HUGE_VAL;
+    return std::pair(standing == LawStanding::another,
+                     standing == LawStanding::sound ? limits::kMostOfTheError * left : left);
   };
+  std::size_t lowest = 0;
   for (std::size_t k = 1; k < now.laws.size(); ++k) {
     if (rank(k) < rank(lowest)) lowest = k;
   }
   std::size_t simplest = lowest;
   for (std::size_t k = 0; k < now.laws.size(); ++k) {
     const Trial& trial = now.laws[k].fine;
-    if (!is_law_of_its_own(context_, trial) || beats(context_, now.laws[lowest].fine, trial)) continue;
+    if (standing_of(context_, trial) != LawStanding::sound || beats(context_, now.laws[lowest].fine, trial)) continue;
     if (trial.p.size() < now.laws[simplest].fine.p.size()) simplest = k;
   }
   return simplest;
@@ -78,19 +145,21 @@ Named Stepwise::leader_beside(std::size_t law, const Trial* to_beat) const {
 }
 
 /// The candidate that predicts best of those that are named beside a law and that no law does without. Judges beside
-/// the best law only, where nothing is left to explain.
-std::optional<Named> Stepwise::leader_of_all(bool structured) {
+/// the best law only, where that leaves noise.
+std::optional<Named> Stepwise::leader_of_all(bool is_noise) {
   Named first = leader_beside(now.best);
   now.last = first.judged;
   std::optional<Named> leader;
   if (first.result.passes) leader = std::move(first);
-  if (!leader && !structured) return leader;
+  if (!leader && is_noise) return leader;
   for (std::size_t law = 0; law < now.laws.size(); ++law) {
     if (law == now.best || !now.laws[law].fine.usable) continue;
     const Trial& to_beat = leader && leader->result.coarse.usable ? leader->result.coarse : best().coarse;
     Named other = leader_beside(law, &to_beat);
     const Trial& trial = other.result.trial;
-    if (!other.result.passes || !is_law_of_its_own(context_, trial) || !beats(context_, trial, best().fine)) continue;
+    if (!other.result.passes || standing_of(context_, trial) == LawStanding::another ||
+        !beats(context_, trial, best().fine))
+      continue;
     if (!leader || beats(context_, trial, leader->result.trial)) leader = std::move(other);
   }
   return leader;
@@ -110,22 +179,21 @@ bool Stepwise::improve(const Named& leader) {
   return true;
 }
 
-void Stepwise::add(const CandidateResult& result, std::vector<std::size_t> equivalent,
-                   std::vector<CandidateResult> judged) {
+void Stepwise::add_term(const CandidateResult& result, std::vector<std::size_t> equivalent,
+                        std::vector<CandidateResult> judged) {
   LadderStep term;
   term.added = result.candidate;
   term.by_level = result.by_level;
   term.equivalent = std::move(equivalent);
   term.judged = std::move(judged);
   now.terms.push_back(std::move(term));
-  fit_laws(coarse_too(result.trial));
 }
 
 /// Adds two effects that hide each other, if there are two such that explain more than the one that leads (if any).
 bool Stepwise::extend_by_pair(const Named* leader, double worth, int most_effects) {
   if (static_cast<int>(now.terms.size()) + 1 >= most_effects) return false;
   const Fitted& top = now.laws[leader != nullptr ? leader->law : now.best];
-  const std::vector<CandidateResult> judged = leader != nullptr ? leader->judged : now.last;
+  const std::vector<CandidateResult>& judged = leader != nullptr ? leader->judged : now.last;
   LeastOfPair least_of_pair;
   least_of_pair.fall = worth;
   if (leader != nullptr) {
@@ -139,30 +207,26 @@ bool Stepwise::extend_by_pair(const Named* leader, double worth, int most_effect
   if (!pair || top.fine.held_out_squares - pair->first.trial.held_out_squares < worth) return false;
   if (leader != nullptr && !are_distinguishable(context_, pair->first, leader->result)) return false;
   // What was judged beside the other one is what decided: it stands for the candidate from here on.
-  std::vector<CandidateResult> of_first = judged;
-  for (CandidateResult& one : of_first) {
+  std::vector<CandidateResult> decided = judged;
+  for (CandidateResult& one : decided) {
     if (one.candidate == pair->first.candidate) one.p_value = pair->first.p_value;
+    if (one.candidate == pair->second.candidate) one.p_value = pair->second.p_value;
   }
-  add(pair->first, {}, std::move(of_first));
-  LadderStep& first = now.terms.back();
-  std::vector<CandidateResult> of_second = first.judged;
-  std::erase_if(of_second, [&](const CandidateResult& one) { return one.candidate == pair->second.candidate; });
-  of_second.push_back(pair->second);
-  add(pair->second, {}, std::move(of_second));
+  add_term(pair->first, {}, decided);
+  add_term(pair->second, {}, std::move(decided));
+  fit_laws(coarse_too(pair->second.trial));
   return true;
 }
 
 void Stepwise::extend(int most_effects) {
   now.finished = true;
-  const std::vector<Probe> probes =
-      probe_all(context_, best().coarse, best().fine, residual_of(context_, best().fine));
-  const std::optional<Named> leader = leader_of_all(!remaining_structure(probes).empty());
+  const std::vector<Probe> probes = probe_all(context_, best().coarse, best().fine, residual_of(context_, best().fine));
+  const bool is_noise = remaining_structure(probes).empty() &&
+                        limits::kMostOfTheError * best().fine.held_out_squares < context_.noise_squares();
+  const std::optional<Named> leader = leader_of_all(is_noise);
   if (static_cast<int>(now.terms.size()) >= most_effects) return;
-  // The probes are of low resolution, where other scatter may have been taken out: what they explain counts as that
-  // part of what the trial leaves.
-  const double here = best().fine.held_out_squares, there = best().coarse.held_out_squares;
-  const double worth =
-      limits::kHopelessPart * largest_fall(probes) * (here > 0 && there > 0 ? std::min(1.0, here / there) : 1);
+  const double here = best().fine.held_out_squares;
+  const double worth = limits::kHopelessPart * largest_fall(probes);
   const bool little = leader && !leader->result.by_level && here - leader->result.trial.held_out_squares < worth;
   if (little) now.withdrawn.push_back(leader->result.candidate);
   const Named* worthy = leader && !little ? &*leader : nullptr;
@@ -171,7 +235,8 @@ void Stepwise::extend(int most_effects) {
   } else if (extend_by_pair(worthy, worth, most_effects)) {
     now.finished = false;
   } else if (worthy != nullptr) {
-    add(worthy->result, worthy->equivalent, worthy->judged);
+    add_term(worthy->result, worthy->equivalent, worthy->judged);
+    fit_laws(coarse_too(worthy->result.trial));
     now.finished = false;
   }
 }
@@ -195,7 +260,7 @@ bool Stepwise::drop_one() {
       others[k].fine = try_model(context_, context_.fine, others[k].coarse.model, others[k].coarse.p);
     });
     for (Fitted& other : others) {
-      if (!is_law_of_its_own(context_, other.fine) || beats(context_, top.fine, other.fine)) continue;
+      if (standing_of(context_, other.fine) != LawStanding::sound || beats(context_, top.fine, other.fine)) continue;
       without = std::move(other);
       needed = false;
       break;
@@ -208,45 +273,15 @@ bool Stepwise::drop_one() {
   return false;
 }
 
-/// The effect of a term and those that explained nearly as much when it was added, each beside the model without it.
-std::vector<CandidateResult> Stepwise::judge_instead(const LadderStep& term, const Trial& without) const {
-  const std::vector<std::string> present = without.model.effect_keys();
-  const auto added = std::ranges::find(term.judged, *term.added, &CandidateResult::candidate);
-  std::vector<const CandidateResult*> rivals;
-  for (const CandidateResult& judged : term.judged) {
-    const Candidate& candidate = candidates_[judged.candidate];
-    const bool near = added == term.judged.end() || judged.fall > limits::kRivalPart * added->fall;
-    const bool is_present = std::ranges::find(present, candidate.info.key) != present.end();
-    if (judged.trial.usable && judged.plausible && near && !is_present && candidate.info.key != key(*term.added) &&
-        without.model.acts_with(candidate.effect)) {
-      rivals.push_back(&judged);
-    }
-  }
-  std::vector<CandidateResult> out(rivals.size() + 1);
-  out[0] = compare(context_, context_.fine, without, best().fine, candidates_[*term.added], 1, least_);
-  out[0].candidate = *term.added;
-  const Trial rest = try_model(context_, context_.coarse, without.model, without.p);
-  run_tasks(rivals.size(), context_.threads, [&](std::size_t r) {
-    const std::size_t k = rivals[r]->candidate;
-    const Trial coarse = try_instead(context_, rest, candidates_[k], rivals[r]->trial);
-    const double behind = coarse.held_out_squares - best().coarse.held_out_squares;
-    out[r + 1].candidate = k;
-    if (!coarse.usable || is_far_behind(context_, behind, rest.held_out_squares - best().coarse.held_out_squares)) return;
-    out[r + 1] = compare(context_, context_.fine, without,
-                         try_model(context_, context_.fine, coarse.model, coarse.p), candidates_[k], 1, least_);
-    out[r + 1].candidate = k;
-  });
-  return out;
-}
-
-/// Each effect was chosen beside what was known then. Once the others are there too, it is compared once more with those
-/// that explained nearly as much: the better one takes its place, and its group is drawn anew. True where one was
+/// Each effect was chosen beside what was known then. Once the others are there too, it is compared once more with
+/// those that explained nearly as much: the better one takes its place, and its group is drawn anew. True where one was
 /// replaced.
 bool Stepwise::exchange_one() {
   for (LadderStep& term : now.terms) {
     const Trial without = try_without(context_, context_.fine, best().fine, key(*term.added), context_.threads);
     if (!without.usable) continue;
-    std::vector<CandidateResult> judged = judge_instead(term, without);
+    std::vector<CandidateResult> judged =
+        judge_near(context_, term, best().fine, best().coarse, without, candidates_, least_);
     const Choice choice = choose(context_, judged, candidates_);
     if (!choice.leader) continue;
     term.equivalent = choice.group;
@@ -284,7 +319,7 @@ std::vector<LadderStep> Stepwise::in_order() const {
     });
     std::size_t least = 0;
     for (std::size_t k = 1; k < last; ++k) {
-      const bool lower = without[k].held_out_squares < without[least].held_out_squares;
+      const bool lower = without[k].plain_held_out < without[least].plain_held_out;
       if (without[k].usable && (!without[least].usable || lower)) least = k;
     }
     steps[last] = std::move(terms[least]);
@@ -296,7 +331,8 @@ std::vector<LadderStep> Stepwise::in_order() const {
   steps[0].trial = std::move(top.fine);
   steps[0].coarse = std::move(top.coarse);
   for (LadderStep& step : steps) {
-    if (step.trial.usable) step.probes = probe_all(context_, step.coarse, step.trial, residual_of(context_, step.trial));
+    if (step.trial.usable)
+      step.probes = probe_all(context_, step.coarse, step.trial, residual_of(context_, step.trial));
   }
   return steps;
 }
@@ -312,7 +348,7 @@ Ladder Stepwise::ladder() && {
   if (out.steps.size() < height) fit_laws({out.top(), out.steps.back().coarse});
   for (const Fitted& other : now.laws) {
     const bool same = other.fine.model.law() == out.top().model.law();
-    if (!same && is_law_of_its_own(context_, other.fine) && !is_on_bound(other.fine) && !beats(context_, out.top(), other.fine))
+    if (!same && standing_of(context_, other.fine) == LawStanding::sound && !beats(context_, out.top(), other.fine))
       out.rivals.push_back(other.fine);
   }
   // What was added after all is distinguishable: both are there.
@@ -322,27 +358,6 @@ Ladder Stepwise::ladder() && {
     });
   }
   return out;
-}
-
-namespace {
-
-/// Whether a round comes to its end in time; where it does not, everything is as it was before.
-template <class Round>
-bool ends_in_time(const std::optional<std::chrono::steady_clock::time_point>& until, Progress& now, Round&& round) {
-  if (!until) {
-    round();
-    return true;
-  }
-  Progress before = now;
-  try {
-    const StopScope scope([&until] { return std::chrono::steady_clock::now() >= *until; });
-    round();
-    return true;
-  } catch (const Stopped&) {
-    stop_point();  // it may have been stopped from outside
-    now = std::move(before);
-    return false;
-  }
 }
 
 }  // namespace
@@ -358,10 +373,12 @@ Ladder climb(const DiagnosisContext& context, const std::vector<Law>& laws,
   while (in_time && !search.now.finished && search.best().fine.usable) {
     if (progress) progress(search.best().fine.model.name(), rounds / (rounds + 3));
     ++rounds;
-    in_time = ends_in_time(limits.until, search.now, [&] {
+    const Progress before = search.now;
+    in_time = done_before(limits.until, [&] {
       search.extend(limits.most_effects);
       if (search.now.finished) search.finish();
     });
+    if (!in_time) search.now = before;
   }
   if (!search.best().fine.usable) {
     Ladder none;

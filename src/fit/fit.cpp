@@ -13,7 +13,6 @@
 #include "points.hpp"
 #include "stick_evidence.hpp"
 #include "tribofit/statistics/distributions.hpp"
-#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
 
@@ -116,31 +115,6 @@ double noise_beside(const Fit& fit, std::size_t parameters) {
   return fit.error.rmse * std::sqrt(count / std::max(1.0, left));
 }
 
-/// Variance of the level of all friction from cycle to cycle, in proportion, where no law has to be right: by what
-/// break-away and friction in fast slip of neighbouring cycles change together. 0 where few cycles show both.
-double level_variance(const Observations& observations) {
-  constexpr double kFastPart = 0.7;  // of the peak of a slip, where friction hardly depends on its speed any more
-  std::vector<double> at_rest, fast;
-  for (const auto& slip : observations.slips) {
-    double peak = 0, sum = 0, count = 0;
-    for (std::size_t i = slip.begin; i < slip.end; ++i) peak = std::max(peak, std::abs(observations.velocity[i]));
-    for (std::size_t i = slip.begin; i < slip.end; ++i) {
-      if (std::abs(observations.velocity[i]) < kFastPart * peak) continue;
-      sum += slip.direction * observations.friction[i];
-      count += 1;
-    }
-    if (!slip.from_stick || !(count > 0) || !std::isfinite(slip.break_away_friction)) continue;
-    at_rest.push_back(slip.break_away_friction);
-    fast.push_back(sum / count);
-  }
-  const std::size_t n = fast.size();
-  if (n < 2 * kFewestCycles) return 0;
-  double products = 0;
-  for (std::size_t k = 1; k < n; ++k) products += 0.5 * (at_rest[k] - at_rest[k - 1]) * (fast[k] - fast[k - 1]);
-  const double scale = median(std::move(at_rest)) * median(std::move(fast));
-  return scale > 0 ? std::max(0.0, products / (scale * static_cast<double>(n - 1))) : 0;
-}
-
 void fill_floor(const FitContext& context, const std::vector<double>& p, const SampleErrors& errors, Fit& fit) {
   Floor floor = mean_floor(context.observations.noise);
   const double count = std::accumulate(errors.counts.begin(), errors.counts.end(), 0.0);
@@ -155,10 +129,9 @@ void fill_floor(const FitContext& context, const std::vector<double>& p, const S
   for (const auto& slip : context.observations.slips) {
     if (slip.from_stick) break_away = std::max(break_away, std::pow(slip.break_away_friction, 2));
   }
-  const double level = std::min(whitening.slow * whitening.noise, level_variance(context.observations)), own = std::pow(floor.scatter, 2) - level * break_away;
+  const double level = whitening.slow * whitening.noise, own = std::pow(floor.scatter, 2) - level * break_away;
   floor.level_scatter = std::sqrt(level);
-  const double scatter =
-      (std::max(0.0, own) * sensitivity + level * model_squares) / std::max(1.0, count);
+  const double scatter = (std::max(0.0, own) * sensitivity + level * model_squares) / std::max(1.0, count);
   const bool points = are_points(context.records);
   if (points) floor.noise = std::min(floor.noise, noise_beside(fit, p.size()));
   if (!points) {

@@ -159,6 +159,12 @@ double break_away_scatter(const Motion& motion, const Segmentation& segmentation
   return std::sqrt(std::max(0.0, variance));
 }
 
+/// Variance of steps by their median.
+double usual_square(std::vector<double> steps) {
+  for (double& step : steps) step = std::abs(step);
+  return std::pow(kSigmaPerMad * median(std::move(steps)), 2);
+}
+
 /// What friction between two samples is off a straight line, where noise does not show it.
 double sampling_error(const Motion& motion, const Segmentation& segmentation) {
   const std::vector<double>& mu = motion.friction;
@@ -173,6 +179,53 @@ double sampling_error(const Motion& motion, const Segmentation& segmentation) {
 }
 
 }  // namespace
+
+double friction_between(const Motion& motion, const Cycle& cycle, double slowest, double fastest) {
+  double sum = 0, count = 0;
+  for (std::size_t i = cycle.slip.begin; i < cycle.slip.end; ++i) {
+    const double speed = cycle.direction * motion.relative_velocity[i];
+    if (speed < slowest || speed > fastest) continue;
+    sum += cycle.direction * motion.friction[i];
+    count += 1;
+  }
+  return sum / count;
+}
+
+double level_scatter(const Motion& motion, const Segmentation& segmentation) {
+  std::vector<Cycle> cycles;
+  std::vector<double> peaks;
+  for (const Cycle& cycle : segmentation.cycles) {
+    if (!segmentation.is_selected(cycle) || !(cycle.stick.size() > 0) || !cycle.slip_complete) continue;
+    cycles.push_back(cycle);
+    peaks.push_back(cycle.peak_velocity);
+  }
+  if (cycles.size() <= kFewestLevelSteps) return 0;
+  const double peak = median(std::move(peaks));
+  std::vector<double> together, apart, of_slip;
+  const Cycle* last = nullptr;
+  double at_rest = 0, in_slip = 0;
+  for (const Cycle& cycle : cycles) {
+    const double now = std::log(cycle.break_away_friction);
+    const double beside = std::log(friction_between(motion, cycle, kSpeedsOfLevel[0] * peak, kSpeedsOfLevel[1] * peak));
+    if (!std::isfinite(now) || !std::isfinite(beside)) continue;
+    if (last != nullptr && last->direction == cycle.direction) {
+      together.push_back(now - at_rest + beside - in_slip);
+      apart.push_back(now - at_rest - beside + in_slip);
+      of_slip.push_back(beside - in_slip);
+    }
+    last = &cycle;
+    at_rest = now;
+    in_slip = beside;
+  }
+  if (together.size() < kFewestLevelSteps) return 0;
+  const auto count = static_cast<double>(together.size());
+  const double alike = usual_square(std::move(together)), opposite = usual_square(std::move(apart));
+  if (!(alike > opposite * (1 + kClearOfZero * std::sqrt(3 / count)))) return 0;
+  const double covariance = 0.25 * (alike - opposite);
+  // Friction in slip follows break-away a little where levels do not scatter: by less than it would move then.
+  const double variance = std::min(covariance, usual_square(std::move(of_slip)));
+  return std::sqrt(std::max(0.0, 0.5 * variance));  // of a level, not of a step between two
+}
 
 FlickerNoise flicker_noise(const Motion& motion, const Segmentation& segmentation) {
   const bool sticks = segmentation.kind != MotionKind::always_slipping;
@@ -222,6 +275,7 @@ RecordNoise noise_of(const Motion& motion, const Segmentation& segmentation, int
       noise.sensor = sensor_noise(motion, segmentation);
       stop_point();
       if (!points) noise.scatter = break_away_scatter(motion, segmentation);
+      if (!points) noise.level_scatter = level_scatter(motion, segmentation);
     } else {
       noise.flicker = flicker_noise(motion, segmentation);
     }
@@ -245,7 +299,8 @@ Floor floor_of(const RecordNoise& noise) {
 }
 
 Floor estimate_floor(const Motion& motion, const Segmentation& segmentation) {
-  RecordNoise noise{sensor_noise(motion, segmentation), 0, {}};
+  RecordNoise noise;
+  noise.sensor = sensor_noise(motion, segmentation);
   stop_point();
   if (!motion.is_points()) noise.scatter = break_away_scatter(motion, segmentation);
   stop_point();

@@ -10,13 +10,18 @@
 namespace tribofit {
 
 /// Standard errors beyond which it is not chance, of one test a record: that mass and stiffness are not zero, that the
-/// levels of neighbouring slips differ, so that noise raises whole slips. Less: white noise passes for it now and then;
-/// more: laws are mistaken for one another in 1/f noise.
+/// levels of neighbouring slips differ. Less: white noise passes for it now and then; more: laws are mistaken for one
+/// another where levels scatter.
 inline constexpr double kClearOfZero = 3;
 
 // Cycles that carry a fit, and samples of a slip that show a curve.
 using segmentation::kFewestCycles;
 using segmentation::kShortestSlip;
+
+/// Speeds of slip at which friction of neighbouring cycles is compared, of the median peak: most reach them, and little
+/// of a high break-away is left there. Steps between levels from which their covariance says more than chance.
+inline constexpr double kSpeedsOfLevel[] = {0.8, 0.9};
+inline constexpr std::size_t kFewestLevelSteps = 8;
 
 /// Noise is taken about parabolas: over 200 samples at most, which even a ramp that creeps, or sliding at a speed that
 /// is swept, is close to, and over a quarter of a slip. 12 leave three quarters of their degrees of freedom beside the

@@ -36,10 +36,11 @@ std::vector<std::size_t> all_slips(const Observations& observations);
 /// neighbouring cycles differ by (half the mean square), so that a slow change, which may be an effect the model lacks,
 /// is not taken for scatter. In matrix form r becomes M r.
 ///
-/// Friction as a whole differs from cycle to cycle too (real pads by 1 to 4 %; noise that wanders over longer times than
-/// a slip does the same): a second random effect, e_i u_i with u_i the model itself and e_i ~ N(0, t^2). It looks like
-/// delta_i g_i where the law falls little, and a law whose g_i it fits better would be taken for the true one. Each
-/// slip's rows are first whitened against it; t^2 comes from what neighbours differ by, too.
+/// Friction as a whole differs from cycle to cycle too (real pads by 1 to 4 %; noise that wanders over longer times
+/// than a slip does the same): a second random effect, e_i u_i with u_i the model itself and e_i ~ N(0, t^2). It looks
+/// like delta_i g_i where the law falls little, and a law whose g_i it fits better would be taken for the true one.
+/// Each slip's rows are first whitened against it; t^2 comes from what neighbours differ by, too, as far as break-away
+/// and friction in fast slip of the record change together (see level_scatter()).
 ///
 /// g_i follows the parameters too: a slip that broke away higher bends differently with them. So each slip is evaluated
 /// at its own level mu_s + delta_i, with delta_i as predicted where the whitening was made (Lindstrom and Bates'

@@ -7,7 +7,6 @@
 #include "limits.hpp"
 #include "model_residuals.hpp"
 #include "statistics/linear_algebra.hpp"
-#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit {
 
@@ -51,18 +50,9 @@ Steps steps_of(const std::vector<double>& values, const std::vector<std::size_t>
   return out;
 }
 
-/// The same by the median of the steps: a few large ones are changes, no scatter.
-double usual_variance(const std::vector<double>& values, const std::vector<std::size_t>& stretch) {
-  std::vector<double> steps;
-  for (std::size_t k = 1; k < values.size(); ++k) {
-    if (stretch[k] == stretch[k - 1]) steps.push_back(std::abs(values[k] - values[k - 1]));
-  }
-  const double typical = kSigmaPerMad * median(std::move(steps));
-  return 0.5 * typical * typical;
-}
-
-/// t^2/sigma^2 of the scatter of levels: what those of neighbours differ by. 0 where chance would make them differ as
-/// much. What comes in a few steps, as a change of friction or what a wrong law makes of other speeds does, is none.
+/// t^2/sigma^2 of the scatter of levels: what those of neighbours differ by, but no more than the record shows without
+/// any model. 0 where chance would make levels differ as much. What a wrong model does to the levels is thus no
+/// scatter.
 double level_scatter_of_slips(const std::vector<Products>& slips, const Observations& observations) {
   std::vector<double> levels;
   std::vector<std::size_t> stretch;
@@ -82,9 +72,11 @@ double level_scatter_of_slips(const std::vector<Products>& slips, const Observat
   // Math. Stat. 12 (1941) 367).
   const auto n = static_cast<double>(levels.size());
   const double noise = left / freedom, by_chance = noise * spread / n;
-  const double variance = std::min(steps.variance, usual_variance(levels, stretch));
-  if (!(variance > by_chance * (1 + kClearOfZero * std::sqrt(3 / steps.count)))) return 0;
-  return (variance - by_chance) / noise;
+  if (!(steps.variance > by_chance * (1 + kClearOfZero * std::sqrt(3 / steps.count)))) return 0;
+  double most = 0;  // of one record or several
+  for (const RecordNoise& record : observations.noise) most += record.level_scatter * record.level_scatter;
+  most /= static_cast<double>(std::max<std::size_t>(1, observations.noise.size()));
+  return std::min(steps.variance - by_chance, most) / noise;
 }
 
 /// delta_i of every slip by least squares, and what noise is left once it is taken out.

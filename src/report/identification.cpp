@@ -4,7 +4,7 @@
 #include "rate_state.hpp"
 #include "report/charts/styles.hpp"
 #include "report_parts.hpp"
-#include "tribofit/diagnosis/residual_variable.hpp"
+#include "tribofit/fit/residual_variable.hpp"
 #include "tribofit/kinematics/health.hpp"
 #include "tribofit/report/terminal.hpp"
 
@@ -45,7 +45,7 @@ std::string missing(const Identification& r) {
   const Fit& fit = r.fits[r.best];
   const auto level = [&](double value) { return significant(value, 3) + unit_behind(friction_unit(r.motion)); };
   std::vector<std::string_view> phrases;
-  for (const std::string& name : r.remaining) phrases.push_back(phrase_of(name));
+  for (const ResidualVariable variable : r.remaining) phrases.push_back(describe(variable).phrase);
   return fmt::format(
       "An effect is not modelled: what the {} law leaves varies with {}, beyond chance (held-out error {}, noise floor "
       "{}, typical error {}).",
@@ -92,8 +92,8 @@ Suggestion next_command(const Identification& r, const ReportOptions& options) {
        {!usable && trimmed, "to see whether the run-up that was left out shows more", with({"--no-trim"})},
        {!usable && !has_csv, "to look at the trace sample by sample", csv},
        {!usable, "to see which options there are", "identify --help"},
-       {usable && (is_above_floor(r.fits[r.best]) || !r.remaining.empty()), "to see where the law fails and which effect explains it",
-        diagnose_command(options.arguments, r.path)},
+       {usable && (is_above_floor(r.fits[r.best]) || !r.remaining.empty()),
+        "to see where the law fails and which effect explains it", diagnose_command(options.arguments, r.path)},
        {!has_csv, "to plot the curve, the residuals and the cycles", csv},
        {!has_option(options.arguments, "--profile"), "to check the intervals by profile likelihood",
         with({"--profile"})},

@@ -266,7 +266,9 @@ Json identification_json(const Identification& r, const JsonOptions& options) {
               driven           ? Json(r.rate_state->best)
               : r.fits.empty() ? Json(nullptr)
                                : Json(r.best),
-              "law_comparison", comparisons_json(r.fits, r.best), "remaining", r.remaining, "analysed", r.analysed, "warnings", r.warnings);
+              "law_comparison", comparisons_json(r.fits, r.best), "remaining",
+              list_of(r.remaining, [](ResidualVariable variable) { return to_string(variable); }), "analysed",
+              r.analysed, "warnings", r.warnings);
   return json;
 }
 

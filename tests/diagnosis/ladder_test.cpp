@@ -10,6 +10,7 @@
 
 #include "../fit/synthetic.hpp"
 #include "diagnosis/findings.hpp"
+#include "diagnosis/nearby_models.hpp"
 #include "diagnosis/stepwise.hpp"
 
 namespace {
@@ -187,13 +188,14 @@ TEST(Climb, ChoosesTheLawAnewWithEveryEffect) {
   EXPECT_THAT(ladder.rivals, IsEmpty());
 }
 
-/// Every cycle's friction is higher or lower as a whole, by 2 % independently, as that of real pads is.
+/// Every cycle's friction is higher or lower as a whole, by 2 %, as that of real pads is.
 TEST(Climb, ALevelThatScattersIsNoOtherLaw) {
   Made made;
   std::mt19937 random(5);
   std::normal_distribution<double> scatter(0, 0.02);
-  for (const Cycle& cycle : made.made.segmentation.cycles) {
+  for (Cycle& cycle : made.made.segmentation.cycles) {
     const double level = 1 + scatter(random);
+    cycle.break_away_friction *= level;
     for (std::size_t i = cycle.slip.begin; i < cycle.slip.end; ++i) made.made.motion.friction[i] *= level;
   }
   made.fine = observe(made.made.motion, made.made.segmentation, Made::channels(), 100);

@@ -48,7 +48,8 @@ struct ResultParameter {
   double systematic = 0;            ///< standard uncertainty from the declared instruments; 0 where none is declared
   double lower95 = 0, upper95 = 0;  ///< statistical 95 % interval
   double profile_lower95 = 0, profile_upper95 = 0;
-  double range_lower = std::numeric_limits<double>::quiet_NaN(), range_upper = range_lower;  ///< see FitParameter::range
+  double range_lower = std::numeric_limits<double>::quiet_NaN(),
+         range_upper = range_lower;        ///< see FitParameter::range
   double start = 0, lower = 0, upper = 0;  ///< where the search began, and its bounds
   bool at_bound = false, determined = true;
 

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "tribofit/diagnosis/residual_variable.hpp"
 #include "tribofit/fit/identification.hpp"
+#include "tribofit/fit/residual_variable.hpp"
 
 namespace tribofit {
 
@@ -109,14 +109,14 @@ struct Confirmation {
 /// effects leaves the other as what looks like slow noise: both must pass, each beside the other, and their p-values
 /// are multiplied by the number of pairs as well. Every law of the list stands beside the effects found so far at every
 /// step, and effects compete beside each: the law is chosen anew with every effect, and an effect is dropped without
-/// which some law does as well. The level of all friction, as that of break-away, may differ from cycle to cycle (random
-/// effects). Free functions of each variable say where the error is, before and after.
+/// which some law does as well. The level of all friction, as that of break-away, may differ from cycle to cycle
+/// (random effects). Free functions of each variable say where the error is, before and after.
 struct Diagnosis {
   Verdict verdict = Verdict::sufficient;
   Law law = ExponentialLaw{};
   /// Laws that these data do not distinguish from it: with the effects of the last rung they predict held-out cycles as
-  /// well (p >= 0.05). None beside Coulomb friction, which is a special case of all. Over them the parameters of the last
-  /// rung have a range (FitParameter::range).
+  /// well (p >= 0.05). None beside Coulomb friction, which is a special case of all. Over them the parameters of the
+  /// last rung have a range (FitParameter::range).
   std::vector<Law> rival_laws = {};
   std::vector<std::string> from_the_start = {};  ///< effects beside the law on every rung, as the command line has them
   std::vector<Share> where;                      ///< of the base law, largest first
@@ -154,10 +154,10 @@ struct DiagnosedTraces {
   bool analysed = true;  ///< false: some trace cannot carry the analysis, its warnings say why
 };
 
-/// Variables, as to_string(ResidualVariable) has them, over which a free function lowers what a fit leaves on held-out
-/// cycles beyond chance, the largest first: something is missing, whatever the noise floor. Empty too where there are
-/// too few cycles to tell. Cost: that of a fit, about. Throws Stopped.
-std::vector<std::string> remaining_over(std::span<const Record> records, const Fit& fit, int threads = 1);
+/// Variables a free function of which lowers what a fit leaves on held-out cycles beyond chance, the largest first: an
+/// effect is not modelled, whatever the noise floor. Empty too where there are too few cycles to tell. Cost: that of a
+/// fit, about. Throws Stopped.
+std::vector<ResidualVariable> remaining_over(std::span<const Record> records, const Fit& fit, int threads = 1);
 
 /// Diagnoses one record, or several together with all parameters shared.
 /// laws: base laws to start from; own: the user's effects, candidates beside the catalogue.

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <chrono>
 #include <exception>
 #include <functional>
+#include <optional>
 #include <utility>
 
 namespace tribofit {
@@ -46,6 +48,20 @@ inline bool stop_asked() {
 /// Throws Stopped where it is.
 inline void stop_point() {
   if (stop_asked()) throw Stopped();
+}
+
+/// Does the work, and says whether it came to its end before `until` (none: it has all the time). What it had begun is
+/// as it left it. Throws Stopped where an outer scope says so.
+inline bool done_before(const std::optional<std::chrono::steady_clock::time_point>& until,
+                        const std::function<void()>& work) {
+  try {
+    const StopScope scope([&until] { return until && std::chrono::steady_clock::now() >= *until; });
+    work();
+    return true;
+  } catch (const Stopped&) {
+    stop_point();
+    return false;
+  }
 }
 
 }  // namespace tribofit

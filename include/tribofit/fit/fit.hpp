@@ -92,13 +92,13 @@ struct ErrorFigures {
 
 /// What even the true law would leave.
 struct Floor {
-  double noise = 0;       ///< sensor noise, standard deviation of a sample; what sampling leaves, if more [1 or N]
-  double scatter = 0;     ///< standard deviation of the break-away level from cycle to cycle [1 or N]
+  double noise = 0;          ///< sensor noise, standard deviation of a sample; what sampling leaves, if more [1 or N]
+  double scatter = 0;        ///< standard deviation of the break-away level from cycle to cycle [1 or N]
   double level_scatter = 0;  ///< the same of all friction, in proportion [1]
-  double slow_noise = 0;  ///< of 1/f noise over longer times than `noise` was taken over [1 or N]
-  double rmse = 0;        ///< all of them, over the samples of the error
-  double sampling = 0;    ///< what sampling leaves, where that is more than sensor noise: it is alike in all cycles
-  std::string source;     ///< how the noise was found: "stick", "slip" or "sampling"
+  double slow_noise = 0;     ///< of 1/f noise over longer times than `noise` was taken over [1 or N]
+  double rmse = 0;           ///< all of them, over the samples of the error
+  double sampling = 0;       ///< what sampling leaves, where that is more than sensor noise: it is alike in all cycles
+  std::string source;        ///< how the noise was found: "stick", "slip" or "sampling"
 };
 
 struct Correlation {

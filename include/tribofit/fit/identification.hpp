@@ -9,6 +9,7 @@
 
 #include "tribofit/fit/fit.hpp"
 #include "tribofit/fit/rate_state.hpp"
+#include "tribofit/fit/residual_variable.hpp"
 #include "tribofit/fit/rig.hpp"
 #include "tribofit/ingest/instruments.hpp"
 #include "tribofit/ingest/read_trace.hpp"
@@ -44,11 +45,12 @@ struct TraceInput {
 /// A part of a trace, and what was fitted to it. Several parts may share one motion.
 struct TracePart {
   Segmentation segmentation;
-  std::vector<Fit> fits;             ///< joint fits first, in the order of options.laws, then the per-cycle extremes
-  std::size_t best = 0;              ///< the fit that predicts held-out cycles best
-  std::vector<std::string> remaining;  ///< see remaining_over() of diagnosis.hpp, of the best fit
-  std::optional<RecordNoise> noise;  ///< of this part, once a fit has asked for it
-  std::vector<std::string> notes;    ///< how the input was read
+  std::vector<Fit> fits;  ///< joint fits first, in the order of options.laws, then the per-cycle extremes
+  std::size_t best = 0;   ///< the fit that predicts held-out cycles best
+  std::vector<ResidualVariable> remaining;  ///< with which the error of the best fit varies beyond chance, see
+                                            ///< remaining_over() of diagnosis.hpp
+  std::optional<RecordNoise> noise;         ///< of this part, once a fit has asked for it
+  std::vector<std::string> notes;           ///< how the input was read
   std::vector<std::string> warnings;
   bool analysed = true;  ///< false: the data were read but cannot carry the analysis, warnings say why
 

@@ -53,7 +53,8 @@ class LinesOfRecord;
 /// The noise of a record, as it shows without any model: a property of the data that all models share.
 struct RecordNoise {
   SensorNoise sensor;
-  double scatter = 0;  ///< standard deviation of the break-away level from cycle to cycle [1 or N]
+  double scatter = 0;        ///< standard deviation of the break-away level from cycle to cycle [1 or N]
+  double level_scatter = 0;  ///< the same of all friction, in proportion [1]
   FlickerNoise flicker;
   double line = 0;         ///< frequency of a line that makes most of the noise in stick [Hz]; 0: none was looked for
   double beside_line = 0;  ///< sensor noise without it [1 or N]

@@ -36,12 +36,4 @@ inline std::string_view to_string(ResidualVariable variable) {
   return describe(variable).name;
 }
 
-/// The phrase of a variable by its name.
-inline std::string_view phrase_of(std::string_view name) {
-  auto variable = ResidualVariable::velocity;
-  while (to_string(variable) != name && variable != ResidualVariable::reversal_distance)
-    variable = static_cast<ResidualVariable>(static_cast<int>(variable) + 1);
-  return describe(variable).phrase;
-}
-
 }  // namespace tribofit
