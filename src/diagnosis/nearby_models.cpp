@@ -1,6 +1,7 @@
 #include "nearby_models.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "fit/starts.hpp"
@@ -40,7 +41,10 @@ Trial try_law(const DiagnosisContext& context, const Law& law, const Trial& know
     }
   }
   std::vector<std::vector<double>> starts = {std::move(from_data)};
-  if (!model.effects().empty()) starts.push_back(std::move(from_levels));
+  if (!model.effects().empty()) {
+    std::ranges::move(falling_elsewhere(level.observations, model, from_levels), std::back_inserter(starts));
+    starts.push_back(std::move(from_levels));
+  }
   return try_model(context, level, model, nearest_if_several(level, model, {}, starts));
 }
 

@@ -177,8 +177,7 @@ std::pair<double, double> strongest_swing(const ProbeInputs& inputs) {
   if (times.size() < limits::kFewestCycles) return {0, 1};
   mean /= total;
   const double span = times.back() - times.front();
-  const double highest = fastest_swing(o);
-  const double step = 0.1 / span;
+  const double highest = fastest_swing(o), step = 0.1 / span;
   // From one frequency to the next every phase turns on by a step of its own.
   std::vector<std::complex<double>> at(times.size()), turn(times.size());
   double f = 0.8 / span, best = -1, frequency = 0;
@@ -336,6 +335,7 @@ std::optional<Probe> over_stick_time(const DiagnosisContext& context, const Leve
 
 std::optional<Probe> over_frequency(const DiagnosisContext& context, const Trial& fine,
                                     std::span<const double> residual) {
+  if (are_points(context.records)) return std::nullopt;
   const Observations& o = context.fine.observations;
   const SpectralLines found = strongest_lines(
       context.records[0], o, residual, std::max(fastest_swing(o), 1 / (limits::kSlowestLine * o.scales.slip_time)),
@@ -370,10 +370,7 @@ std::vector<Probe> probe_all(const DiagnosisContext& context, const Trial& coars
   }
   std::vector<std::optional<Probe>> found(all.size() + 1);
   run_tasks(found.size(), context.threads, [&](std::size_t k) {
-    if (k == all.size()) {
-      if (!are_points(context.records)) found[k] = over_frequency(context, fine, residual);
-      return;
-    }
+    if (k == all.size()) return void(found[k] = over_frequency(context, fine, residual));
     found[k] = all[k](context, context.coarse, coarse);
     // What matters is judged as models are: means over a good part of a slip are off themselves, and have other noise.
     const bool matters = found[k] && found[k]->fall > 0 && found[k]->size > limits::kLeastStructure;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -60,13 +61,10 @@ RankedStart start_with(const std::vector<double>& base, const FrictionModel& mod
   return promise;
 }
 
-/// Parameters of the base from which a search begins: as fitted, and where nothing sticks and the law has become a
-/// straight line also with the law falling at other speeds. Without a break-away to hold it a law may have taken the
-/// place of the effect, and from there no step leads back.
+/// Parameters of the base from which a search begins: as fitted, and where the law alone has become a straight line
+/// also with the law falling at other speeds: it may have taken the place of the effect, and no step leads back.
 std::vector<std::vector<double>> bases_of_search(const Level& level, const Trial& base) {
   std::vector<std::vector<double>> out = {base.p};
-  const auto& slips = level.observations.slips;
-  if (std::any_of(slips.begin(), slips.end(), [](const auto& slip) { return slip.from_stick; })) return out;
   const Law& law = base.model.law();
   const double fastest = level.observations.fastest;
   const bool rises = friction_at_rest(law, base.p) < kinetic_friction(law, base.p, fastest) ||
@@ -75,15 +73,7 @@ std::vector<std::vector<double>> bases_of_search(const Level& level, const Trial
   std::vector<double> anew = start_from_data(base.model, level.observations, level.bounds_of(base.model));
   std::copy(base.p.begin() + static_cast<std::ptrdiff_t>(base.model.base_count()), base.p.end(),
             anew.begin() + static_cast<std::ptrdiff_t>(base.model.base_count()));
-  for (std::size_t k = 0; k < base.model.base_count(); ++k) {
-    const BoundScaling scaling = base.model.parameters()[k].parameter.bound_scaling;
-    if (scaling != BoundScaling::against_speed && scaling != BoundScaling::with_speed) continue;
-    for (const double part : limits::kFallsWithin) {  // of the fastest slip
-      const double speed = part * level.observations.fastest;
-      out.push_back(anew);
-      out.back()[k] = scaling == BoundScaling::with_speed ? speed : 1 / speed;
-    }
-  }
+  std::ranges::move(falling_elsewhere(level.observations, base.model, anew), std::back_inserter(out));
   return out;
 }
 
@@ -139,6 +129,22 @@ std::optional<RankedStart> nearest_phase(const ModelResiduals& residuals, const 
 }
 
 }  // namespace
+
+std::vector<std::vector<double>> falling_elsewhere(const Observations& observations, const FrictionModel& model,
+                                                   const std::vector<double>& start) {
+  std::vector<std::vector<double>> out;
+  if (std::ranges::any_of(observations.slips, [](const auto& slip) { return slip.from_stick; })) return out;
+  for (std::size_t k = 0; k < model.base_count(); ++k) {
+    const BoundScaling scaling = model.parameters()[k].parameter.bound_scaling;
+    if (scaling != BoundScaling::against_speed && scaling != BoundScaling::with_speed) continue;
+    for (const double part : limits::kFallsWithin) {  // of the fastest slip
+      const double speed = part * observations.fastest;
+      out.push_back(start);
+      out.back()[k] = scaling == BoundScaling::with_speed ? speed : 1 / speed;
+    }
+  }
+  return out;
+}
 
 SearchStart search_start_of(const DiagnosisContext& context, const Level& level, const Trial& base,
                             const Candidate& candidate, std::span<const double> residual, const LeastFalls& least) {

@@ -139,6 +139,10 @@ struct LeastFalls {
   double plain = -std::numeric_limits<double>::infinity();
 };
 
+/// Starts beside one where nothing sticks: the law falls at other speeds. None where a break-away holds it.
+std::vector<std::vector<double>> falling_elsewhere(const Observations& observations, const FrictionModel& model,
+                                                   const std::vector<double>& start);
+
 /// The best two of the starts of an effect beside the model of `base`, a trial at `level`. residual: see residual_of.
 SearchStart search_start_of(const DiagnosisContext& context, const Level& level, const Trial& base,
                             const Candidate& candidate, std::span<const double> residual, const LeastFalls& least);

@@ -2,10 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <memory>
 #include <random>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "../fit/synthetic.hpp"
@@ -25,8 +23,7 @@ using ::testing::UnorderedElementsAre;
 constexpr double kNoise = 0.003;
 
 Candidate candidate(const std::string& name) {
-  const Effect effect = make_effect(name);
-  return {effect, describe(effect), {}, {}};
+  return {make_effect(name), describe(make_effect(name)), {}, {}};
 }
 
 std::vector<Candidate> candidates_of(const std::vector<std::string>& names) {
