@@ -101,8 +101,7 @@ Fit fit_as_identify(const FrictionModel& model, std::span<const Record> records,
 }
 
 /// Fits every rung. The first and the last, which are reported with all their figures, are fitted to what `identify`
-/// fits them to, so that both say the same of one model. A rung that cannot be fitted, or that held-out errors at full
-/// resolution do not bear out, ends the ladder below it.
+/// fits them to, so that both say the same of one model. Rungs above the one that predicts best at full resolution go.
 std::vector<Fit> fit_rungs(const DiagnosisContext& context, const Instruments& instruments, FitOptions options,
                            Ladder& ladder) {
   options.threads = context.threads;  // the last rung takes most of the time
@@ -118,17 +117,18 @@ std::vector<Fit> fit_rungs(const DiagnosisContext& context, const Instruments& i
     warm.start = trial.p;
     fits[k] = fit_model(trial.model, context.records, context.fine.observations, instruments, warm);
   });
-  const auto failed = std::find_if(fits.begin() + 1, fits.end(), [&](const Fit& rung) {
-    const Fit& below = *(&rung - 1);
-    return rung.parameters.empty() || !(rung.error.held_out_rmse < below.error.held_out_rmse);
-  });
-  if (failed != fits.end() && failed - fits.begin() > 1) {  // the new last rung
-    Fit& last = *(failed - 1);
-    const bool at_bound = std::ranges::any_of(last.parameters, &FitParameter::at_bound);
-    last = fit_as_identify(last.model, context.records, instruments, options, last.values(), at_bound);
+  // The last one is the one that predicts best: what comes after it has earned nothing.
+  const auto error_of = [](const Fit& fit) {
+    const double error = fit.parameters.empty() ? HUGE_VAL : fit.error.held_out_rmse;
+    return std::isfinite(error) ? error : HUGE_VAL;
+  };
+  const auto last = std::ranges::min_element(fits, {}, error_of);
+  if (last != fits.begin() && last + 1 != fits.end()) {
+    const bool at_bound = std::ranges::any_of(last->parameters, &FitParameter::at_bound);
+    *last = fit_as_identify(last->model, context.records, instruments, options, last->values(), at_bound);
   }
-  ladder.steps.resize(static_cast<std::size_t>(failed - fits.begin()));
-  fits.erase(failed, fits.end());
+  fits.erase(last + 1, fits.end());
+  ladder.steps.resize(fits.size());
   return fits;
 }
 

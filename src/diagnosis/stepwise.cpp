@@ -95,29 +95,32 @@ std::size_t Stepwise::best_law() const {
   for (std::size_t k = 1; k < now.laws.size(); ++k) {
     if (rank(k) < rank(lowest)) lowest = k;
   }
+  const auto moved = [&](std::size_t k) {  // parameters that the data say something about
+    return std::ranges::count(now.laws[k].fine.evidence.unconstrained(), false);
+  };
   std::size_t simplest = lowest;
   for (std::size_t k = 0; k < now.laws.size(); ++k) {
     const Trial& trial = now.laws[k].fine;
     if (standing_of(context_, trial) != LawStanding::sound || beats(context_, now.laws[lowest].fine, trial)) continue;
-    if (trial.p.size() < now.laws[simplest].fine.p.size()) simplest = k;
+    if (moved(k) < moved(simplest)) simplest = k;
   }
   return simplest;
 }
 
-/// Fits every other law with the effects of a model.
+/// Fits every law with the effects of a model: that of the model too, whose search may have ended in a lower minimum.
 void Stepwise::fit_laws(Fitted known) {
-  const Law law = known.fine.model.law();
   run_tasks(now.laws.size(), context_.threads, [&](std::size_t k) {
-    const Law& other = now.laws[k].fine.model.law();
-    if (other == law) return;
-    Trial coarse = try_law(context_, other, known.coarse);
+    const Law law = now.laws[k].fine.model.law();
+    const bool is_known = law == known.fine.model.law();
+    Trial coarse = try_law(context_, law, known.coarse);
+    if (is_known && !(coarse.usable && beats(context_, coarse, known.coarse))) {
+      now.laws[k] = known;
+      return;
+    }
     Trial fine = coarse.usable ? try_model(context_, context_.fine, coarse.model, coarse.p) : Trial();
-    if (!fine.usable) fine.model = FrictionModel(other);
+    if (!fine.usable) fine.model = FrictionModel(law);
     now.laws[k] = {std::move(fine), std::move(coarse)};
   });
-  for (Fitted& fitted : now.laws) {
-    if (fitted.fine.model.law() == law) fitted = known;
-  }
   now.best = best_law();
 }
 
@@ -144,16 +147,17 @@ Named Stepwise::leader_beside(std::size_t law, const Trial* to_beat) const {
   return out;
 }
 
-/// The candidate that predicts best of those that are named beside a law and that no law does without. Judges beside
-/// the best law only, where that leaves noise.
+/// The candidate that predicts best of those that are named beside a law and that no law does without. Where the best
+/// law leaves noise only simpler ones are judged beside it.
 std::optional<Named> Stepwise::leader_of_all(bool is_noise) {
   Named first = leader_beside(now.best);
   now.last = first.judged;
   std::optional<Named> leader;
   if (first.result.passes) leader = std::move(first);
-  if (!leader && is_noise) return leader;
+  const bool simpler_only = !leader && is_noise;
   for (std::size_t law = 0; law < now.laws.size(); ++law) {
     if (law == now.best || !now.laws[law].fine.usable) continue;
+    if (simpler_only && now.laws[law].fine.p.size() >= best().fine.p.size()) continue;
     const Trial& to_beat = leader && leader->result.coarse.usable ? leader->result.coarse : best().coarse;
     Named other = leader_beside(law, &to_beat);
     const Trial& trial = other.result.trial;

@@ -23,10 +23,13 @@ void set_extent(const Motion& motion, Observations& out) {
     out.friction_scale = std::max(1.0, out.largest_friction);
     return;
   }
-  // Not the largest, which may be the inertia of a mass below the sensor, or one bad sample.
-  std::vector<double> sizes(out.friction.size());
-  std::transform(out.friction.begin(), out.friction.end(), sizes.begin(), [](double f) { return std::abs(f); });
-  out.friction_scale = std::max(2 * median(sizes), kLeastScaleOfForce * out.largest_friction);
+  out.friction_scale = out.largest_friction;
+  if (!motion.is_points()) {
+    // Not the largest, which may be the inertia of a mass below the sensor, or one bad sample.
+    std::vector<double> sizes(out.friction.size());
+    std::transform(out.friction.begin(), out.friction.end(), sizes.begin(), [](double f) { return std::abs(f); });
+    out.friction_scale = std::max(2 * median(sizes), kLeastScaleOfForce * out.largest_friction);
+  }
   if (!(out.friction_scale > 0)) out.friction_scale = 1;
 }
 

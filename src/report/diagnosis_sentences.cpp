@@ -84,6 +84,10 @@ std::string ranges(const DiagnosedTraces& result) {
   const Motion& motion = result.traces.front().motion;
   for (const FitParameter& p : result.fits[result.best].parameters) {
     if (!p.range) continue;
+    if (!std::isfinite(p.range->upper - p.range->lower)) {
+      parts.push_back(full_name(p) + " is not determined");
+      continue;
+    }
     const auto level = [&](double value) { return significant(shown(p, value), 3); };
     parts.push_back(fmt::format("{} is between {} and {}{}", full_name(p), level(p.range->lower), level(p.range->upper),
                                 unit_behind(shown_unit(p, motion))));

@@ -241,6 +241,61 @@ TEST(BaseLaw, AStrongViscousPartIsFoundBesideTheStribeckFall) {
   }
 }
 
+/// Steady points in both directions, as of a gear or a joint in N: friction over speed in parts of the fastest, and a
+/// zero that is off.
+TraceInput gear(const std::function<double(double)>& friction, double zero, std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal;
+  auto trace = std::make_shared<Trace>();
+  trace->path = "gear";
+  trace->kind = RecordKind::points;
+  trace->friction_kind = FrictionKind::force;
+  trace->velocity_kind = VelocityKind::relative;
+  for (int k = 0; k < 120; ++k) {
+    const double part = 0.005 * std::pow(200.0, (k / 2) / 59.0), sign = k % 2 == 0 ? 1 : -1;
+    trace->time.push_back(k);
+    trace->velocity.push_back(sign * 0.3 * part);
+    trace->friction.push_back(sign * friction(part) + zero + 0.1 * normal(engine));
+  }
+  trace->steps = {{0, trace->size(), "", {}}};
+  return {trace->path, {}, trace};
+}
+
+/// Friction that falls by 4 N and grows again by up to ten times as much with speed, whatever the law of the fall.
+TEST(BaseLaw, TheFallIsFoundBelowViscousFrictionOfManyTimesItsSize) {
+  const std::vector<std::pair<std::string, std::function<double(double)>>> falls = {
+      {"gaussian", [](double v) { return std::exp(-std::pow(v / 0.1, 2)); }},
+      {"exponential", [](double v) { return std::exp(-v / 0.1); }},
+      {"fractional", [](double v) { return 1 / (1 + v / 0.05); }}};
+  int records = 0, right = 0;
+  for (const auto& [law, fall] : falls) {
+    for (const double grows : {0.5, 2.0, 10.0}) {
+      for (const double zero : {0.0, 1.5}) {
+        const auto friction = [&, &f = fall](double v) { return 5 + 4 * f(v) + 4 * grows * v; };
+        const Diagnosis d = diagnose({gear(friction, zero, static_cast<std::uint64_t>(++records))}).diagnosis;
+        const bool in_set =
+            to_string(d.law) == law ||
+            std::ranges::any_of(d.rival_laws, [&, &name = law](const Law& l) { return to_string(l) == name; });
+        std::vector<std::string> expected = {"viscous"};
+        if (zero != 0) expected.insert(expected.begin(), "sensor-offset");
+        std::vector<std::string> found = names(d);
+        std::sort(found.begin(), found.end());
+        right += in_set && found == expected ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GE(right, records - 1);
+}
+
+/// A straight line is no part of a Stribeck curve.
+TEST(BaseLaw, FrictionThatFallsInAStraightLineIsConstantWithNegativeViscousFriction) {
+  const DiagnosedTraces out = diagnose({speed_steps([](double v) { return 0.3 - 0.0006 * v; }, 4)});
+  EXPECT_EQ(to_string(out.diagnosis.law), "coulomb");
+  EXPECT_THAT(names(out.diagnosis), ElementsAre("viscous"));
+  const FitParameter& found = out.fits.back().parameters.back();
+  EXPECT_NEAR(found.value, -0.6, 4 * found.std_error);
+}
+
 TEST(Noise, ConstantFrictionAtConstantSpeedsHasNoEffect) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const DiagnosedTraces result = diagnose(constant_friction(seed));

@@ -127,7 +127,7 @@ struct Observations {
   double stroke = 0;            ///< median length [m]; 0: not needed, or no strokes
   double slowest = 0;           ///< least |v_r| [m/s]; 0 where a slip begins in stick
   double largest_friction = 0;  ///< largest |mu|
-  double friction_scale = 1;    ///< what is 1 for a coefficient: of forces twice the median |friction| [N]
+  double friction_scale = 1;    ///< of coefficients at least 1; of forces twice the median, of points the largest [N]
   double flicker = 0;           ///< power of 1/f noise in the first record, in squared parts of friction
   RecordScales scales;
   std::vector<RecordScales> scales_of_records = {};  ///< of each by itself, where there are several

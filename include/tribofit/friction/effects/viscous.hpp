@@ -4,12 +4,12 @@
 
 namespace tribofit {
 
-/// Friction grows in proportion to speed: mu = f(v) + sigma v.
+/// Friction changes in proportion to speed, as a fluid or soft layer in the contact makes it grow: mu = f(v) + sigma v.
 struct Viscous {
   static constexpr std::string_view key = "viscous";
   static EffectInfo info() {
     return {.key = std::string(key),
-            .statement = "a fluid or soft layer in the contact adds friction in proportion to the sliding speed",
+            .statement = "friction changes in proportion to the sliding speed: a fluid or soft layer in the contact makes it grow",
             .equation = "mu = f(v) + sigma v",
             .source =
                 "R. Stribeck, Z. VDI 46 (1902) 1341; B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, "
