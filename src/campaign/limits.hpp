@@ -27,6 +27,10 @@ inline constexpr double kConfounded = 0.9, kSameCondition = 0.999;
 /// Scatter between runs, over what their own errors give, from which a shared parameter is hardly shared.
 inline constexpr double kManyErrors = 5;
 
+/// Degrees of freedom with which repeats tell each other the size of their errors: runs of three blocks then have equal
+/// weights nearly, runs of ten blocks mostly their own.
+inline constexpr double kFreedomOfRepeats = 4;
+
 /// Least eigenvalue of a correlation matrix that can be inverted: standard errors are known to six digits at best.
 inline constexpr double kLeastEigenvalue = 1e-6;
 

@@ -37,7 +37,7 @@ PooledGroup::OfFit pool_fits(std::span<const RunResult> runs, const std::vector<
       const ResultFit* fit = runs[r].fit(like.law, like.protocol);
       if (fit == nullptr || p >= fit->parameters.size() || fit->parameters[p].name != parameter.name) continue;
       const ResultParameter& q = fit->parameters[p];
-      values.push_back({q.value, q.has_error() ? q.std_error : kNaN, q.systematic});
+      values.push_back({q.value, q.has_error() ? q.std_error : kNaN, q.systematic, fit->degrees_of_freedom});
       if (q.has_error() && std::isfinite(q.value)) last = &q;
     }
     PooledValue& value = out.parameters.emplace_back(pool(parameter.name, parameter.unit, values));
@@ -66,7 +66,7 @@ std::vector<PooledValue> pool_measures(std::span<const RunResult> runs, const st
     std::vector<RunValue> values;
     for (const std::size_t r : members) {
       const Estimate& estimate = runs[r].*measure.value;
-      values.push_back({estimate.value, estimate.std_error});
+      values.push_back({estimate.value, estimate.std_error, 0, std::max(1.0, static_cast<double>(runs[r].cycles) - 1)});
     }
     out.push_back(pool(measure.name, measure.unit, values));
   }
@@ -109,6 +109,20 @@ std::string without(const PooledGroup& group, Condition Conditions::*which) {
   return any ? conditions_text(rest, group.others) : "";
 }
 
+/// Variances of runs under the same conditions are alike, and a run of few cycles hardly knows its own: each is taken
+/// together with their mean (G. K. Smyth, Stat. Appl. Genet. Mol. Biol. 3 (2004) 3, doi:10.2202/1544-6115.1027). The
+/// run that happens to have the smallest would else have all the weight.
+Eigen::VectorXd variances_of(std::span<const RunValue> runs, double freedom) {
+  Eigen::VectorXd out(static_cast<Eigen::Index>(runs.size()));
+  double mean = 0;
+  for (const RunValue& run : runs) mean += run.freedom / freedom * run.std_error * run.std_error;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const double own = runs[i].freedom * runs[i].std_error * runs[i].std_error;
+    out(static_cast<Eigen::Index>(i)) = (own + kFreedomOfRepeats * mean) / (runs[i].freedom + kFreedomOfRepeats);
+  }
+  return out;
+}
+
 }  // namespace
 
 PooledValue pool(std::string name, std::string unit, std::vector<RunValue> runs) {
@@ -125,19 +139,21 @@ PooledValue pool(std::string name, std::string unit, std::vector<RunValue> runs)
     return out;
   }
   const auto n = static_cast<Eigen::Index>(runs.size());
-  Eigen::VectorXd y(n), variance(n);
+  Eigen::VectorXd y(n);
+  double freedom = 0;
   for (Eigen::Index i = 0; i < n; ++i) {
     const RunValue& run = runs[static_cast<std::size_t>(i)];
     y(i) = run.value;
-    variance(i) = run.std_error * run.std_error;
+    freedom += run.freedom;
     out.systematic += run.systematic / static_cast<double>(n);  // shared by the runs, so their mean has it in full
   }
-  const MetaRegression mean = meta_regression(y, variance, Eigen::MatrixXd::Ones(n, 1));
+  const MetaRegression mean = meta_regression(y, variances_of(runs, freedom), Eigen::MatrixXd::Ones(n, 1));
   out.value = mean.coefficients(0);
-  out.std_error = std::sqrt(mean.covariance(0, 0));
   out.statistical = mean.statistical(0);
+  out.std_error = std::max(std::sqrt(mean.covariance(0, 0)), out.statistical);
   out.between = n > 1 ? mean.between : kNaN;
-  const double half = (n > 1 ? t_quantile_95(mean.degrees_of_freedom) : kNormalQuantile95) * out.std_error;
+  double half = t_quantile_95(freedom) * out.statistical;
+  if (n > 1) half = std::max(half, t_quantile_95(mean.degrees_of_freedom) * std::sqrt(mean.covariance(0, 0)));
   out.lower95 = out.value - half;
   out.upper95 = out.value + half;
   const Estimate plain = mean_of_independent({y.data(), runs.size()});

@@ -48,13 +48,15 @@ struct PooledGroup {
 /// Pools repeats: runs whose stated conditions (radius, speed, load, any further one but the order) are equal.
 ///
 /// The mean over runs of y_i with errors v_i and scatter tau^2 between them: see meta_regression(); intervals cover
-/// with three runs as with thirty. A parameter on its bound, or with an error that is not known, is not used.
-/// Groups in the order of their first run; runs that were not fitted are in none. Cost: linear in runs.
+/// with two runs as with thirty, of few cycles as of many, and are no narrower than the runs' own errors allow. A
+/// parameter on its bound, or with an error that is not known, is not used. Groups in the order of their first run;
+/// runs that were not fitted are in none. Cost: linear in runs.
 std::vector<PooledGroup> pool_repeats(std::span<const RunResult> runs);
 
 /// What a run says of a quantity.
 struct RunValue {
   double value = 0, std_error = 0, systematic = 0;
+  double freedom = 1e6;  ///< degrees of freedom of std_error; by default it is known
 };
 
 /// Pools one quantity over runs; those with errors that are not finite and positive are not used.
