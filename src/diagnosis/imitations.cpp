@@ -118,57 +118,6 @@ void add_open_problems(std::span<const Record> records, Diagnosis& diagnosis) {
   }
 }
 
-namespace {
-
-/// Friction of every cycle at break-away and where its slip is fastest, over the usual.
-struct Levels {
-  std::vector<double> break_away, slip;
-};
-
-void add_levels(const Record& record, Levels& levels) {
-  std::vector<double> break_away, slip;
-  for (const Cycle& cycle : record.segmentation->cycles) {
-    if (!record.segmentation->is_selected(cycle) || !(cycle.stick.size() > 0) || !cycle.slip_complete) continue;
-    const double fast = friction_between(*record.motion, cycle, limits::kFastSlip * cycle.peak_velocity, HUGE_VAL);
-    if (!std::isfinite(cycle.break_away_friction) || !std::isfinite(fast)) continue;
-    break_away.push_back(cycle.break_away_friction), slip.push_back(fast);
-  }
-  if (break_away.size() < limits::kFewestCycles) return;
-  const auto relative = [](std::vector<double>& values) {
-    const double middle = median(values);
-    for (double& value : values) value = value / middle - 1;
-  };
-  relative(break_away), relative(slip);
-  levels.break_away.insert(levels.break_away.end(), break_away.begin(), break_away.end());
-  levels.slip.insert(levels.slip.end(), slip.begin(), slip.end());
-}
-
-/// Root mean square of what both do together; 0: they do not.
-double swing_of(const Levels& levels) {
-  double squares = 0, others = 0, products = 0;
-  const std::size_t n = levels.slip.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    squares += levels.slip[k] * levels.slip[k];
-    others += levels.break_away[k] * levels.break_away[k];
-    products += levels.slip[k] * levels.break_away[k];
-  }
-  if (n == 0 || !(squares > 0) || !(others > 0)) return 0;
-  const double swing = std::sqrt(squares / static_cast<double>(n)), slope = std::sqrt(others / squares);
-  const bool in_proportion = products / std::sqrt(squares * others) > limits::kSwingsTogether &&
-                             slope > 1 / limits::kSwingsAlike && slope < limits::kSwingsAlike;
-  return in_proportion && swing > limits::kLeastSwing ? swing : 0;
-}
-
-}  // namespace
-
-double common_swing(std::span<const Record> records) {
-  const auto has_load = [](const Record& record) { return !record.motion->load.empty(); };
-  if (std::any_of(records.begin(), records.end(), has_load)) return 0;
-  Levels levels;
-  for (const Record& record : records) add_levels(record, levels);
-  return swing_of(levels);
-}
-
 void offer_load_variation(std::span<const Record> records, Diagnosis& diagnosis) {
   const auto has_load = [](const Record& record) { return !record.motion->load.empty(); };
   if (std::any_of(records.begin(), records.end(), has_load)) return;
@@ -185,8 +134,9 @@ void offer_load_variation(std::span<const Record> records, Diagnosis& diagnosis)
       finding.reason += "; a step of the load that was not recorded does the same";
   }
   if (diagnosis.verdict != Verdict::unexplained) return;
-  const double swing = common_swing(records);
-  if (swing == 0) return;
+  double scatter = 0;
+  for (const Record& record : records) scatter = std::max(scatter, level_scatter(*record.motion, *record.segmentation));
+  if (scatter < limits::kLeastSwing) return;
   for (const Effect& effect : catalogue) {
     const EffectInfo info = describe(effect);
     const auto at = std::find_if(diagnosis.effects.begin(), diagnosis.effects.end(),
@@ -196,7 +146,7 @@ void offer_load_variation(std::span<const Record> records, Diagnosis& diagnosis)
     at->reason = fmt::format(
         "friction at break-away and in fast slip rises and falls together, by {} % from cycle to cycle: the load "
         "may vary; record the load",
-        fixed(100 * swing, 1));
+        fixed(100 * scatter, 1));
     break;
   }
   diagnosis.next_experiment =

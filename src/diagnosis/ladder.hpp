@@ -31,14 +31,4 @@ struct Ladder {
   const Trial& top() const { return steps.back().trial; }
 };
 
-/// Where structure is left that no effect explains, a name that was given to a smaller part of the error while a free
-/// function of one variable explained far more is probably wrong: it is withdrawn, with those that stand on it. Not
-/// where the effects above it have explained nearly all of that after all. Nor does a name stand for less than what is
-/// left where friction swings as a whole: a load that moves makes another law of any. swinging: squares that are left
-/// there, with the scatter of break-away; 0: it does not swing.
-void withdraw(Ladder& ladder, double swinging);
-
-/// What the largest structure that free functions found would take away of the held-out squares; 0 where none is left.
-double largest_fall(const std::vector<Probe>& probes);
-
 }  // namespace tribofit::diagnosis

@@ -93,8 +93,7 @@ inline constexpr std::size_t kMostStarts = 2;       ///< the linear step ranks s
 /// Of the fall of a rung: what the model below it gains as much from being fitted anew, was in a false minimum. Less
 /// than half, so that the rest is judged beside the right one. Strictly lower each time, so that it ends.
 inline constexpr double kLowerMinimum = 0.3;
-inline constexpr double kWithdrawnPart = 0.7;  ///< of what a free function explains: less, and the name is wrong
-inline constexpr double kRivalPart = 0.5;      ///< of the fall of the one chosen: less does not catch up
+inline constexpr double kRivalPart = 0.5;  ///< of the fall of the one chosen: less does not catch up
 /// Two effects of the same variable may each explain half of what a free function finds there, but not much less.
 inline constexpr double kHopelessPart = 0.35;
 inline constexpr double kStraight = 0.5;  ///< of a rise still to come at the fastest slip: a straight line, not a law
@@ -107,8 +106,6 @@ inline constexpr double kLeastPossible = 0.1;  ///< of the squares of the noise:
 
 /// p-value: what is not plausible takes more evidence than a name, and no slow noise passes for it.
 inline constexpr double kChanceBeyondBounds = 0.001;
-
-// Whether a run that was held back bears a finding out.
 
 // What remains.
 inline constexpr double kChance = 0.01;            ///< p-value below which structure is not chance
@@ -136,9 +133,8 @@ inline constexpr double kFormPart = 0.6;  ///< of what a free function explains,
 
 // ---- a load that was not recorded
 
-/// Part of the peak above which a slip is fast; how closely friction at break-away and in fast slip go together, how
-/// much alike they swing, and by how much at least: scatter of break-away is less, and does not reach the slip.
-inline constexpr double kFastSlip = 0.7, kSwingsTogether = 0.8, kSwingsAlike = 2.0, kLeastSwing = 0.01;
+/// Scatter of levels from which the load may move: less shows on few plots.
+inline constexpr double kLeastSwing = 0.01;
 
 }  // namespace limits
 

@@ -6,7 +6,6 @@
 
 #include "fit/points.hpp"
 #include "fit/spectral_lines.hpp"
-#include "imitations.hpp"
 #include "limits.hpp"
 
 namespace tribofit::diagnosis {
@@ -103,7 +102,6 @@ DiagnosisContext context_of(std::span<const Record> records, const Observations&
   DiagnosisContext context(records, fine, coarse, floor.noise, floor.scatter);
   context.shared = (floor.sampling > 0 ? std::pow(floor.sampling / floor.noise, 2) : 0) +
                    left_by_corrections(records, fine, floor.noise) / context.noise_squares();
-  context.swing = common_swing(records);
   context.fine.known = context.coarse.known = std::move(known);
   context.threads = threads;
   return context;

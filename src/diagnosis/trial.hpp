@@ -72,7 +72,6 @@ struct DiagnosisContext {
   double noise = 0;                 ///< sensor noise of a sample [1 or N]
   double scatter = 0;               ///< of break-away from cycle to cycle [1 or N]
   double shared = 0;  ///< of its squares, what sampling and corrections leave: no chance, and no structure either
-  double swing = 0;   ///< see common_swing()
 
   int threads = 1;  ///< over candidates
 

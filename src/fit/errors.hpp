@@ -48,9 +48,6 @@ SensorNoise sensor_noise(const Motion& motion, const Segmentation& segmentation)
 /// where no stick is long enough.
 CorrelatedNoise noise_in_sticks(std::uint8_t channel, const Motion& motion, const Segmentation& segmentation);
 
-/// Mean |friction| of a cycle at speeds of its slip within a range [m/s]. NaN where it has none.
-double friction_between(const Motion& motion, const Cycle& cycle, double slowest, double fastest);
-
 /// Standard deviation of the level of all friction from cycle to cycle, in proportion, where no law has to be right:
 /// what friction at break-away and in fast slip of neighbouring cycles change by together. Their covariance is taken by
 /// medians (R. Gnanadesikan, J. R. Kettenring, Biometrics 28 (1972) 81, doi:10.2307/2528963): a few large steps are

@@ -165,6 +165,18 @@ double usual_square(std::vector<double> steps) {
   return std::pow(kSigmaPerMad * median(std::move(steps)), 2);
 }
 
+/// Mean |friction| of a cycle at speeds of its slip within a range [m/s]. NaN where it has none.
+double friction_between(const Motion& motion, const Cycle& cycle, double slowest, double fastest) {
+  double sum = 0, count = 0;
+  for (std::size_t i = cycle.slip.begin; i < cycle.slip.end; ++i) {
+    const double speed = cycle.direction * motion.relative_velocity[i];
+    if (speed < slowest || speed > fastest) continue;
+    sum += cycle.direction * motion.friction[i];
+    count += 1;
+  }
+  return sum / count;
+}
+
 /// What friction between two samples is off a straight line, where noise does not show it.
 double sampling_error(const Motion& motion, const Segmentation& segmentation) {
   const std::vector<double>& mu = motion.friction;
@@ -179,17 +191,6 @@ double sampling_error(const Motion& motion, const Segmentation& segmentation) {
 }
 
 }  // namespace
-
-double friction_between(const Motion& motion, const Cycle& cycle, double slowest, double fastest) {
-  double sum = 0, count = 0;
-  for (std::size_t i = cycle.slip.begin; i < cycle.slip.end; ++i) {
-    const double speed = cycle.direction * motion.relative_velocity[i];
-    if (speed < slowest || speed > fastest) continue;
-    sum += cycle.direction * motion.friction[i];
-    count += 1;
-  }
-  return sum / count;
-}
 
 double level_scatter(const Motion& motion, const Segmentation& segmentation) {
   std::vector<Cycle> cycles;

@@ -44,12 +44,12 @@ std::string verdict_on(const Fit& fit, const std::string& unit) {
 std::string missing(const Identification& r) {
   const Fit& fit = r.fits[r.best];
   const auto level = [&](double value) { return significant(value, 3) + unit_behind(friction_unit(r.motion)); };
-  std::vector<std::string_view> phrases;
-  for (const ResidualVariable variable : r.remaining) phrases.push_back(describe(variable).phrase);
+  std::vector<std::string> phrases;
+  for (const ResidualVariable variable : r.remaining) phrases.emplace_back(describe(variable).phrase);
   return fmt::format(
       "An effect is not modelled: what the {} law leaves varies with {}, beyond chance (held-out error {}, noise floor "
       "{}, typical error {}).",
-      fit.model.name(), fmt::join(phrases, " and with "), level(fit.error.held_out_rmse), level(fit.floor.rmse),
+      fit.model.name(), enumerated(phrases), level(fit.error.held_out_rmse), level(fit.floor.rmse),
       percent(fit.error.mean_relative));
 }
 

@@ -204,69 +204,6 @@ TEST(Climb, ALevelThatScattersIsNoOtherLaw) {
   EXPECT_NEAR(ladder.top().p[1], synthetic::table4_15mm(ExponentialLaw{})[1], 0.01);
 }
 
-// --------------------------------------------------------------------------------------------------------- withdraw
-
-Probe structure(double fall) {
-  Probe probe;
-  probe.variable = ResidualVariable::velocity;
-  probe.fall = fall;
-  probe.size = 1;
-  probe.p_value = 1e-9;
-  return probe;
-}
-
-/// A base that leaves 10000 with structure of 4000 in it, and one effect that takes away `fall` and leaves `left`.
-Ladder with_one_effect(double fall, double left) {
-  Ladder ladder;
-  ladder.steps.resize(2);
-  ladder.steps[0].trial.held_out_squares = 10000;
-  ladder.steps[0].probes = {structure(4000)};
-  ladder.steps[1].added = 7;
-  ladder.steps[1].trial.held_out_squares = 10000 - fall;
-  ladder.steps[1].judged.resize(3);
-  if (left > 0) ladder.steps[1].probes = {structure(left)};
-  return ladder;
-}
-
-TEST(Withdraw, ANameForASmallPartOfWhatAFreeFunctionExplains) {
-  Ladder ladder = with_one_effect(1000, 3000);
-  withdraw(ladder, 0);
-  EXPECT_EQ(ladder.steps.size(), 1u);
-  EXPECT_THAT(ladder.withdrawn, ElementsAre(7u));
-  EXPECT_EQ(ladder.last.size(), 3u) << "what was judged beside the base is judged last now";
-}
-
-TEST(Withdraw, NotWhereNearlyAllIsExplainedOrTheLevelsOfBreakAwayAreMeant) {
-  Ladder most = with_one_effect(3500, 500), all = with_one_effect(1000, 0), rest = with_one_effect(1000, 100),
-         by_level = with_one_effect(1000, 3000);
-  by_level.steps[1].by_level = true;
-  for (Ladder* ladder : {&most, &all, &rest, &by_level}) {
-    withdraw(*ladder, 0);
-    EXPECT_EQ(ladder->steps.size(), 2u);
-    EXPECT_THAT(ladder->withdrawn, IsEmpty());
-  }
-}
-
-TEST(Withdraw, WhatIsLessThanASwingOfFrictionAsAWhole) {
-  Ladder less = with_one_effect(3500, 0), more = with_one_effect(3500, 0);
-  for (Ladder* ladder : {&less, &more}) {
-    for (LadderStep& step : ladder->steps) step.trial.plain_held_out = step.trial.held_out_squares;
-  }
-  withdraw(less, 5000);
-  EXPECT_THAT(less.withdrawn, ElementsAre(7u));
-  withdraw(more, 2000);
-  EXPECT_THAT(more.withdrawn, IsEmpty());
-}
-
-TEST(Withdraw, TakesWhatStandsOnItToo) {
-  Ladder ladder = with_one_effect(1000, 3000);
-  ladder.steps.push_back(ladder.steps[1]);
-  ladder.steps[2].added = 8;
-  withdraw(ladder, 0);
-  EXPECT_EQ(ladder.steps.size(), 1u);
-  EXPECT_THAT(ladder.withdrawn, ElementsAre(7u, 8u));
-}
-
 // --------------------------------------------------------------------------------------------------------- findings
 
 /// A result of one effect alone beside the base, at the starts of its parameters.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <numbers>
 #include <random>
 #include <string>
 #include <utility>
@@ -294,6 +295,27 @@ TEST(BaseLaw, FrictionThatFallsInAStraightLineIsConstantWithNegativeViscousFrict
   EXPECT_THAT(names(out.diagnosis), ElementsAre("viscous"));
   const FitParameter& found = out.fits.back().parameters.back();
   EXPECT_NEAR(found.value, -0.6, 4 * found.std_error);
+}
+
+/// Strokes over 40 s while the zero of the force sensor drifts by a seventh of the friction.
+TEST(Measurement, AZeroThatDriftsIsToldFromFrictionThatDrifts) {
+  std::mt19937_64 engine(6);
+  std::normal_distribution<double> normal;
+  auto trace = std::make_shared<Trace>();
+  trace->path = "strokes";
+  trace->velocity_kind = VelocityKind::relative;
+  for (int i = 0; i < 8000; ++i) {
+    const double t = 0.005 * i, v = 0.02 * std::sin(2 * std::numbers::pi * 0.5 * t);
+    const double mu = std::copysign(0.22 + 0.13 * std::exp(-std::abs(v) / 0.012), v);
+    trace->time.push_back(t);
+    trace->velocity.push_back(v + 2e-5 * normal(engine));
+    trace->friction.push_back(mu + 0.001 * t + 0.003 * normal(engine));
+  }
+  trace->steps = {{0, trace->size(), "", {}}};
+  const DiagnosedTraces out = diagnose({{trace->path, {}, trace}});
+  EXPECT_THAT(names(out.diagnosis), ElementsAre("zero-drift"));
+  const FitParameter& found = out.fits.back().parameters.back();
+  EXPECT_NEAR(found.value, 0.001, 4 * found.std_error);
 }
 
 TEST(Noise, ConstantFrictionAtConstantSpeedsHasNoEffect) {

@@ -160,6 +160,7 @@ TEST(Effects, SayWhatTheirEquationSaysAtAPoint) {
       {"ringing", {0.01, 200, 0.02, 0}, {}, mu},  // no break-away was recorded
       {"sensor-inertia", {0.5}, {.acceleration = 2}, mu - 0.02},
       {"sensor-offset", {0.01}, {.velocity = -0.05}, -mu + 0.01},
+      {"zero-drift", {0.001}, {.time = 20, .velocity = -0.05}, -mu + 0.02},
       {"crosstalk", {0.02}, {.velocity = -0.05, .load = 75}, -mu + 0.03},
       {"interference", {0.01, 50, 1}, {.time = 0.02}, mu + 0.01 * std::cos(1)},
       {"interference", {0.01, 50, 0}, {.time = 0.03, .velocity = -0.05}, -mu - 0.01},

@@ -42,6 +42,7 @@ const std::vector<Row>& rows() {
       {"backlash", {.sizes = {0.05, 0.1, 0.2}, .others = {{.lower = 3, .upper = 30}}}},
       {"sensor-inertia", {.sizes = {0.1, 0.2}}},
       {"sensor-offset", {.sizes = {0.01, 0.02}, .either_sign = true}},
+      {"zero-drift", {.sizes = {0.0006, 0.0012}, .either_sign = true}},
       {"crosstalk", {.sizes = {0.01, 0.02}, .either_sign = true}},
       {"force-bandwidth", {.sizes = {300, 200, 100}, .others = {{.lower = 0.5, .upper = 0.9}}}},
       {"channel-delay", {.sizes = {0.5, 1, 2}, .either_sign = true}},

@@ -35,6 +35,7 @@
 #include "tribofit/friction/effects/stribeck_exponent.hpp"
 #include "tribofit/friction/effects/temperature_dependence.hpp"
 #include "tribofit/friction/effects/viscous.hpp"
+#include "tribofit/friction/effects/zero_drift.hpp"
 #include "tribofit/friction/formula.hpp"
 
 namespace tribofit {
@@ -44,8 +45,8 @@ namespace tribofit {
 using EffectAlternatives =
     std::variant<Viscous, StribeckExponent, FrictionalLag, RateState, Bristle, ContactSpin, Ageing, Asymmetry,
                  Hysteresis, Heating, RunIn, Drift, StepChange, LoadDependence, TemperatureDependence, Runout,
-                 DiscPattern, SpeedRipple, LoadCoupling, Ringing, Backlash, SensorInertia, SensorOffset, Crosstalk,
-                 ForceBandwidth, ChannelDelay, RadiusOffset, VelocityGain, VelocityHighPass, VelocityOffset,
+                 DiscPattern, SpeedRipple, LoadCoupling, Ringing, Backlash, SensorInertia, SensorOffset, ZeroDrift,
+                 Crosstalk, ForceBandwidth, ChannelDelay, RadiusOffset, VelocityGain, VelocityHighPass, VelocityOffset,
                  VelocityBandwidth, VelocityCompression, ClockDrift, Interference, ForceLowPass, RateStateHealing,
                  Formula>;
 
