@@ -6,6 +6,7 @@
 
 #include "fit/starts.hpp"
 #include "limits.hpp"
+#include "tribofit/execution/parallel.hpp"
 
 namespace tribofit::diagnosis {
 
@@ -14,6 +15,20 @@ Trial try_without(const DiagnosisContext& context, const Level& level, const Tri
   Trial rest = without_effect(full, key);
   return try_model(context, level, rest.model, std::move(rest.p), threads);
 }
+
+namespace {
+
+/// The model of `rest` with the effect of a candidate, at the values found when it was judged, at low resolution.
+Trial try_instead(const DiagnosisContext& context, const Trial& rest, const Candidate& candidate, const Trial& judged) {
+  FrictionModel model = with_effect(rest.model, candidate.effect);
+  const std::size_t offset = model.offset_of(candidate.info.key), added = model.count_of(candidate.info.key);
+  const auto from = judged.p.begin() + static_cast<std::ptrdiff_t>(judged.model.offset_of(candidate.info.key));
+  std::vector<double> start = rest.p;
+  start.insert(start.begin() + static_cast<std::ptrdiff_t>(offset), from, from + static_cast<std::ptrdiff_t>(added));
+  return try_model(context, context.coarse, model, std::move(start));
+}
+
+}  // namespace
 
 Trial try_law(const DiagnosisContext& context, const Law& law, const Trial& known) {
   std::vector<Effect> effects(known.model.effects().begin(), known.model.effects().end());
@@ -47,6 +62,38 @@ LawStanding standing_of(const DiagnosisContext& context, const Trial& trial) {
   const auto last = trial.at_bound.begin() + static_cast<std::ptrdiff_t>(trial.model.base_count());
   const bool on_bound = std::find(trial.at_bound.begin(), last, true) != last;
   return rises || on_bound ? LawStanding::doubtful : LawStanding::sound;
+}
+
+std::vector<CandidateResult> judge_near(const DiagnosisContext& context, const LadderStep& term, const Trial& full,
+                                        const Trial& coarse_full, const Trial& without,
+                                        const std::vector<Candidate>& candidates, const Limits& least) {
+  const std::vector<std::string> present = without.model.effect_keys();
+  const auto added = std::ranges::find(term.judged, *term.added, &CandidateResult::candidate);
+  std::vector<const CandidateResult*> rivals;
+  for (const CandidateResult& judged : term.judged) {
+    const Candidate& candidate = candidates[judged.candidate];
+    const bool near = added == term.judged.end() || judged.fall > limits::kRivalPart * added->fall;
+    const bool is_present = std::ranges::find(present, candidate.info.key) != present.end();
+    if (judged.trial.usable && judged.plausible && near && !is_present &&
+        candidate.info.key != candidates[*term.added].info.key && without.model.acts_with(candidate.effect)) {
+      rivals.push_back(&judged);
+    }
+  }
+  std::vector<CandidateResult> out(rivals.size() + 1);
+  out[0] = compare(context, context.fine, without, full, candidates[*term.added], 1, least);
+  out[0].candidate = *term.added;
+  const Trial rest = try_model(context, context.coarse, without.model, without.p);
+  run_tasks(rivals.size(), context.threads, [&](std::size_t r) {
+    const std::size_t k = rivals[r]->candidate;
+    const Trial coarse = try_instead(context, rest, candidates[k], rivals[r]->trial);
+    const double behind = coarse.held_out_squares - coarse_full.held_out_squares;
+    out[r + 1].candidate = k;
+    if (!coarse.usable || is_far_behind(context, behind, rest.held_out_squares - coarse_full.held_out_squares)) return;
+    out[r + 1] = compare(context, context.fine, without, try_model(context, context.fine, coarse.model, coarse.p),
+                         candidates[k], 1, least);
+    out[r + 1].candidate = k;
+  });
+  return out;
 }
 
 std::vector<Law> competing_laws(const std::vector<Law>& given, std::span<const Effect> effects) {

@@ -4,6 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "candidates.hpp"
+#include "ladder.hpp"
 #include "trial.hpp"
 
 namespace tribofit::diagnosis {
@@ -24,6 +26,12 @@ enum class LawStanding {
              ///< it could not be fitted
 };
 LawStanding standing_of(const DiagnosisContext& context, const Trial& trial);
+
+/// The effect of a term and those that explained nearly as much when it was added, each beside the model without it.
+/// full: the model with it, at both resolutions.
+std::vector<CandidateResult> judge_near(const DiagnosisContext& context, const LadderStep& term, const Trial& full,
+                                        const Trial& coarse_full, const Trial& without,
+                                        const std::vector<Candidate>& candidates, const Limits& least);
 
 /// Laws that compete: the one that was chosen, or every law of the list on which the effects can act.
 std::vector<Law> competing_laws(const std::vector<Law>& given, std::span<const Effect> effects);

@@ -74,6 +74,7 @@ class Stepwise {
   void add_term(const CandidateResult& result, std::vector<std::size_t> equivalent,
                 std::vector<CandidateResult> judged);
   bool drop_one();
+  bool exchange_one();
   std::vector<LadderStep> in_order() const;
 
   const DiagnosisContext& context_;
@@ -282,10 +283,37 @@ bool Stepwise::drop_one() {
   return false;
 }
 
+/// Each effect was chosen beside what was known then. Once the others are there too, it is compared once more with
+/// those that explained nearly as much: the better one takes its place, and its group is drawn anew. True where one was
+/// replaced.
+bool Stepwise::exchange_one() {
+  for (LadderStep& term : now.terms) {
+    const Trial without = try_without(context_, context_.fine, best().fine, key(*term.added), context_.threads);
+    if (!without.usable) continue;
+    std::vector<CandidateResult> judged =
+        judge_near(context_, term, best().fine, best().coarse, without, candidates_, least_);
+    const Choice choice = choose(context_, judged, candidates_);
+    if (!choice.leader) continue;
+    term.equivalent = choice.group;
+    if (*choice.leader == 0) continue;
+    term.added = judged[*choice.leader].candidate;
+    term.by_level = judged[*choice.leader].by_level;
+    fit_laws(coarse_too(judged[*choice.leader].trial));
+    return true;
+  }
+  return false;
+}
+
 void Stepwise::finish() {
   const std::size_t law = now.best;
   bool changed = false;
   while (drop_one()) changed = true;
+  for (std::size_t k = 0; k < now.terms.size() && now.terms.size() > 1; ++k) {  // as often as there are effects
+    if (!exchange_one()) break;
+    changed = true;
+  }
+  while (changed && drop_one()) {
+  }
   if (changed || law != now.best) now.last = judge_beside(now.best);
 }
 

@@ -21,7 +21,7 @@ struct ClimbLimits {
 /// and the candidates of the step are every effect beside every law, and pairs of effects that hide each other: what
 /// predicts held-out cycles best is taken, if it is named by the rule of evidence (see compare()) beside its own law
 /// and no law without it does as well. So the law is chosen anew with every effect. At the end an effect is dropped
-/// without which some law does as well.
+/// without which some law does as well, and each is compared once more with those that came near it.
 /// from_the_start: effects that stand beside each law in every model. progress: may be empty.
 Ladder climb(const DiagnosisContext& context, const std::vector<Law>& laws,
              const std::vector<Candidate>& from_the_start, const std::vector<Candidate>& candidates,
