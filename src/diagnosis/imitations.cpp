@@ -11,7 +11,6 @@
 #include "limits.hpp"
 #include "tribofit/kinematics/health.hpp"
 #include "tribofit/output/digits.hpp"
-#include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::diagnosis {
 namespace {
