@@ -59,7 +59,7 @@ Excitation excitation_of(std::span<const Record> records, const Observations& ob
   }
   out.both_directions = forth && back;
   for (const Record& record : records) out.reversals = std::max(out.reversals, reversals_of(*record.segmentation));
-  out.speed_changes = out.breaks_away;
+  out.speed_changes = out.breaks_away || out.both_directions;
   for (std::size_t r = 0; r < records.size() && !out.speed_changes; ++r) {
     out.speed_changes = speed_changes(records[r], observations, r);
   }
@@ -255,11 +255,16 @@ ParameterStarts starts_of_parameter(const Parameter& parameter, AllowedRange bou
       return {change_points(observations, residual), static_cast<double>(observations.slips.size())};
     case ParameterSearch::distance_of_change:
       return distances_of_change(observations, residual, bounds);
+    case ParameterSearch::jump_at_restick:
     case ParameterSearch::grid:
       break;
   }
   if (parameter.within_record) bounds.upper = std::min(bounds.upper, std::max(2 * longest, bounds.lower * 1.5));
-  return {grid_of(parameter, bounds.lower, bounds.upper)};
+  ParameterStarts out{grid_of(parameter, bounds.lower, bounds.upper)};
+  const double jump = first.motion->restick_delay;
+  if (parameter.search == ParameterSearch::jump_at_restick && jump != 0)
+    out.values.push_back(std::clamp(jump, bounds.lower, bounds.upper));
+  return out;
 }
 
 }  // namespace

@@ -147,7 +147,8 @@ std::optional<Fit> fit_uncorrected(const PreparedTrace& prepared, IdentifyOption
                                    const EffectRoles& effects) {
   const Motion& motion = prepared.trace.motion;
   const bool distorted = motion.velocity_zero.any() || motion.velocity_low_pass.any() ||
-                         motion.friction_low_pass.any() || motion.compression.any() || motion.clock_drift.any();
+                         motion.friction_low_pass.any() || motion.velocity_response.any() ||
+                         motion.friction_response.any() || motion.clock_drift.any();
   const bool corrected = distorted || motion.high_pass > 0 || motion.speed_ripple.amplitude > 0 ||
                          motion.plateau_correction != PlateauCorrection::none ||
                          prepared.trace.load_coupling.value != 0;

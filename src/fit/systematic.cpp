@@ -195,11 +195,22 @@ void add_undone_shifts(const Sources& s, std::vector<Shift>& shifts) {
     if (const double u = motion.velocity_zero.std_error; u > 0) {
       shifts.push_back({s.values([&](const Place& at, std::size_t) { return at.record == r ? u : 0.0; })});
     }
-    if (const double u = motion.compression.std_error; u > 0) {
+    const UndoneResponse &of_v = motion.velocity_response, &of_mu = motion.friction_response;
+    if (of_v.any()) {
       shifts.push_back({s.values([&](const Place& at, std::size_t i) {
         const double v = motion.disc_velocity_at(at.sample) - s.observations.velocity[i];
-        return at.record == r ? -u * v * std::pow(v / motion.fastest_velocity, 2) : 0.0;
+        return at.record == r ? -of_v.std_error * of_v.response.slope(v) : 0.0;
       })});
+    }
+    if (of_mu.any()) {
+      // Break-away is at the end of the range, where s = 1.
+      std::vector<double> part(s.records.size(), 0.0);
+      part[r] = of_mu.std_error;
+      shifts.push_back({.friction = s.values([&](const Place& at, std::size_t i) {
+                          const double mu = s.observations.friction[i];
+                          return at.record == r ? of_mu.std_error * (of_mu.response.slope(mu) - mu) : 0.0;
+                        }),
+                        .part = std::move(part)});
     }
   }
 }

@@ -32,7 +32,8 @@ void refuse_same(std::span<const Effect> effects) {
 }
 
 Effect make_effect(std::string_view name) {
-  const Effect forms[] = {Effect(std::in_place_type<RateStateHealing>), Effect(std::in_place_type<ForceLowPass>)};
+  const Effect forms[] = {Effect(std::in_place_type<RateStateHealing>), Effect(std::in_place_type<ForceLowPass>),
+                          Effect(std::in_place_type<VelocityGainByDirection>)};
   const std::size_t colon = name.find(':');
   std::vector<std::string> known;
   for (const Effect& effect : effect_catalogue()) known.push_back(describe(effect).key);

@@ -40,6 +40,7 @@ class Assembler {
 
   Trace assemble() {
     set_kind();
+    leave_out_unloaded_ends(run_);
     set_steps();
     set_lever();
     set_load();

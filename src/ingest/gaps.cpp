@@ -85,4 +85,21 @@ void exclude(const std::vector<std::size_t>& rows, std::string_view what, FileRe
   }
 }
 
+void leave_out_unloaded_ends(FileRecord& recording) {
+  const auto& load = recording[Channel::load];
+  if (!recording.has(Channel::load) || recording.has(Channel::mu) || recording.is_points()) return;
+  double largest = kSmallestLoad;
+  for (const double value : load) largest = std::max(largest, std::abs(value));
+  const auto loaded = [&](double value) { return std::abs(value) > kLoadKnownTo * largest; };  // a zero may be off
+  const auto first = std::ranges::find_if(load, loaded);
+  if (first == load.end()) return;  // refused where friction is made
+  const auto last = std::find_if(load.rbegin(), load.rend(), loaded).base();
+  const auto begin = static_cast<std::size_t>(first - load.begin()), end = static_cast<std::size_t>(last - load.begin());
+  const std::size_t without = load.size() - (end - begin);
+  if (without == 0) return;
+  recording.warnings.push_back(
+      fmt::format("{} of {} rows have no load, before or after the test: they take no part", without, load.size()));
+  recording.keep_rows(begin, end);
+}
+
 }  // namespace tribofit

@@ -32,17 +32,7 @@ std::vector<double> interpolate(const std::vector<double>& base, double offset, 
 
 /// Keeps rows [begin, end) and starts their time at 0.
 void crop(FileRecord& run, std::size_t begin, std::size_t end) {
-  for (const Channel which : run.present()) {
-    std::vector<double>& channel = run[which];
-    channel.resize(end);
-    channel.erase(channel.begin(), channel.begin() + static_cast<std::ptrdiff_t>(begin));
-  }
-  for (Step& step : run.steps) {
-    step.begin = std::clamp(step.begin, begin, end) - begin;
-    step.end = std::clamp(step.end, begin, end) - begin;
-  }
-  std::erase_if(run.steps, [](const Step& step) { return step.begin == step.end; });
-  run.cut_rows += begin;
+  run.keep_rows(begin, end);
   auto& time = run[Channel::time];
   const double start = time.front();
   for (double& t : time) t -= start;

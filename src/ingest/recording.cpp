@@ -241,6 +241,20 @@ std::size_t FileRecord::rows() const {
   return rows;
 }
 
+void FileRecord::keep_rows(std::size_t begin, std::size_t end) {
+  for (const Channel which : present()) {
+    std::vector<double>& channel = (*this)[which];
+    channel.resize(end);
+    channel.erase(channel.begin(), channel.begin() + static_cast<std::ptrdiff_t>(begin));
+  }
+  for (Step& step : steps) {
+    step.begin = std::clamp(step.begin, begin, end) - begin;
+    step.end = std::clamp(step.end, begin, end) - begin;
+  }
+  std::erase_if(steps, [](const Step& step) { return step.begin == step.end; });
+  cut_rows += begin;
+}
+
 InputLocation FileRecord::location(std::size_t row, Channel channel) const {
   const Column* column = columns.find(channel);
   const std::string name = column != nullptr ? column->name : std::string();

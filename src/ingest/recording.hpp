@@ -58,6 +58,8 @@ struct FileRecord : Trace {
   }
   bool has_velocity() const { return has(Channel::v_b) || has(Channel::v_r); }
   bool has_position() const { return has(Channel::x_b) || has(Channel::x_d); }
+  /// Keeps rows [begin, end) of all channels, at their times.
+  void keep_rows(std::size_t begin, std::size_t end);
   InputLocation file() const { return {path, 0, ""}; }
   /// Where a row came from, for messages.
   InputLocation location(std::size_t row, Channel channel) const;
@@ -121,6 +123,10 @@ std::vector<std::size_t> find_repeated_rows(const FileRecord& recording);
 /// Excludes rows from the channels, lines and stated steps, and warns with their number and places. The time must be
 /// known: what remains has gaps. what: the rows, as "with a cell that is not a number".
 void exclude(const std::vector<std::size_t>& rows, std::string_view what, FileRecord& recording);
+
+/// Leaves out the rows before the block is loaded and after it is lifted, where friction is made of force over load,
+/// and warns: in them there is no friction.
+void leave_out_unloaded_ends(FileRecord& recording);
 
 // ---- clocks (clock.cpp)
 

@@ -48,9 +48,15 @@ std::size_t window_of_slope(std::span<const double> position, double step) {
   const double levels = static_cast<double>(kFewestLevels * kShortestHalf) * find_resolution(position) / most;
   const std::size_t narrowest =
       std::clamp(levels > 0 ? static_cast<std::size_t>(levels) : 0, kShortestHalf, std::max(kShortestHalf, widest));
-  const std::size_t of_value = window_by_prediction(position.subspan(from, some), step, narrowest, widest);
-  return std::clamp(static_cast<std::size_t>(kSlopeOverValue * static_cast<double>(of_value)), narrowest,
-                    std::max(narrowest, widest));
+  const std::span<const double> part = position.subspan(from, some);
+  const auto error_over = [&](std::size_t half) { return local_derivatives(part, step, half).prediction_error; };
+  const std::size_t of_value = window_by_prediction(part, step, narrowest, widest);
+  const double least = error_over(of_value);
+  std::size_t half = std::clamp(static_cast<std::size_t>(kSlopeOverValue * static_cast<double>(of_value)), narrowest,
+                                std::max(narrowest, widest));
+  // A window that fits between two corners no more follows neither of them.
+  while (half > of_value && error_over(half) > kSlopeOverValue * least) half = std::max(of_value, 9 * half / 10);
+  return half;
 }
 
 void clean(std::vector<double>& position, const char* name, std::vector<std::string>& notes) {

@@ -254,11 +254,12 @@ inline constexpr double kZeroAgrees = 0.1, kZeroErrors = 3;
 /// The same for either half of the record, where slips are read wrongly: they are in both, as fast at least as this.
 inline constexpr double kHalvesAgree = 0.3, kHalfOfMean = 0.5;
 
-// ---- compression of the velocity
+// ---- static response of either channel
 /// Part of the gain that may be lost at the fastest, and how nearly the plateau is omega r where slips alone are read
 /// wrongly, over what the block would move on average.
 inline constexpr double kMostCompressed = 0.3, kPlateauHolds = 0.2;
-inline constexpr double kSureOfCompression = 0.12;  // above it another characteristic moves alpha by some per cent
+/// The least part of friction's gain that is lost at its largest: a spring is not straighter.
+inline constexpr double kLeastBend = 0.01;
 /// Of the part, its standard error for not knowing the characteristic: of third order it may be or of any other.
 inline constexpr double kOtherCharacteristic = 0.1;
 

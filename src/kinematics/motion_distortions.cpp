@@ -10,6 +10,7 @@
 #include "net_displacement.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/output/digits.hpp"
+#include "static_responses.hpp"
 #include "undo_low_pass.hpp"
 
 // The stages of a motion that undo what its channels did to their readings.
@@ -31,7 +32,10 @@ void MotionStages::undo_distortions() {
   undo_zero();
   if (search_.sticks && !samples_->velocity_repeats()) samples_->find_lost(trace_, search_, disc_);
   // What was lost of slips is missing in the way of the block.
-  if (!samples_->lost().are_significant(search_.plateaus.runs.size())) undo_compression();
+  if (!samples_->lost().are_significant(search_.plateaus.runs.size()) && options_.undo_distortions) {
+    undo_velocity_response();
+    undo_friction_response();
+  }
   undo_low_pass();
   undo_clock_drift();
   find_friction_filter();
@@ -71,20 +75,30 @@ void MotionStages::undo_zero() {
   find_plateau();
 }
 
-void MotionStages::undo_compression() {
+void MotionStages::undo_velocity_response() {
   if (zero_.kind != BlockZero::Kind::uneven || !disc_.known || !speed_is_constant() ||
       samples_->clips_slips(search_.plateaus))
     return;
   if (std::abs(final_level(search_.plateaus) - disc_.constant) > kPlateauHolds * std::abs(zero_.mean.value)) return;
-  const Compression found = find_compression(trace_, search_, zero_.mean);
-  if (found.part.value == 0 || std::abs(found.part.value) > kMostCompressed || !options_.undo_distortions) return;
-  motion_.compression = found.part;
-  motion_.fastest_velocity = found.fastest;
-  for (double& v : trace_.velocity) v = decompressed(v, found.part.value, found.fastest);
-  motion_.notes.push_back(fmt::format("velocity: its gain is {} % {} at the highest speed; corrected",
-                                      general(100 * std::abs(found.part.value), 3),
-                                      found.part.value > 0 ? "less" : "more"));
+  motion_.velocity_response = find_velocity_response(trace_, search_, zero_.mean);
+  const StaticResponse& found = motion_.velocity_response.response;
+  if (!found.any()) return;
+  for (double& v : trace_.velocity) v = found.undone(v);
+  const bool one_sided = found.form == StaticResponse::Form::one_sided;
+  motion_.notes.push_back(fmt::format("velocity: its gain is {} % {} {}; corrected",
+                                      general(100 * std::abs(found.part), 3), found.part > 0 ? "less" : "more",
+                                      one_sided ? "against the disc" : "at the highest speed"));
   find_plateau();
+}
+
+void MotionStages::undo_friction_response() {
+  if (!is_block() || !search_.sticks) return;
+  motion_.friction_response = find_friction_response(trace_, search_);
+  const StaticResponse& found = motion_.friction_response.response;
+  if (!found.any()) return;
+  for (double& mu : trace_.friction) mu = found.undone(mu);
+  motion_.notes.push_back(fmt::format("friction: its gain is {} % less at the highest reading; corrected",
+                                      general(100 * found.part, 3)));
 }
 
 /// One that the user states is undone whether it shows or not.
@@ -128,6 +142,7 @@ void MotionStages::undo_low_pass() {
 void MotionStages::undo_clock_drift() {
   if (trace_.velocity_kind == VelocityKind::fixed_block) return;
   clocks_ = find_clock_drift(trace_.friction, low_pass_.resticks);
+  motion_.restick_delay = clocks_.at_start * motion_.step;
   // A filter that holds its input for a sample is half of one early or late: friction, where it jumps, shows it.
   const bool holds = motion_.velocity_low_pass.any() && !clocks_.drift.any() && clocks_.slips > 0;
   if (holds && std::abs(clocks_.at_start) < kHeldInput && clocks_.is_sharp) {

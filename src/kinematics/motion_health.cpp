@@ -119,14 +119,14 @@ HealthItem MotionStages::check_level() const {
   const bool can_be_held = motion_.sticks || motion_.constant_disc_velocity != 0;
   if (motion_.velocity_kind == VelocityKind::relative && can_be_held) {
     HealthItem item = kinematics::check_measured_velocity(motion_, plateaus_in_motion(), search_.blocks.length);
-    kinematics::add_zero(zero_, true, 0, item);
+    kinematics::add_zero(zero_, true, {}, item);
     return item;
   }
   const double stated = speed_was_stated_ ? disc_.constant : 0;
   if (!speed_levels_.empty()) return kinematics::check_speed_steps(motion_, speed_levels_, search_.blocks, stated);
   HealthItem item = kinematics::check_plateau_speed(motion_, plateau_, speed_was_stated_,
                                                     motion_.conditions.radius.known(), recorded_);
-  kinematics::add_zero(zero_, speed_was_stated_, motion_.compression.value, item);
+  kinematics::add_zero(zero_, speed_was_stated_, motion_.velocity_response, item);
   if (zero_drift_.value == 0) return item;
   item.status = std::max(item.status, HealthItem::Status::warning);
   item.message += fmt::format("; the zero of the velocity drifts by {} mm/s over the record; corrected",
@@ -137,7 +137,7 @@ HealthItem MotionStages::check_level() const {
 void MotionStages::compare_plateau() {
   // What moves a velocity that is nonlinear from omega r is neither radius nor gain.
   const bool is_nonlinear =
-      samples_->velocity_is_slew_limited() || (zero_.kind == BlockZero::Kind::uneven && !motion_.compression.any());
+      samples_->velocity_is_slew_limited() || (zero_.kind == BlockZero::Kind::uneven && !motion_.velocity_response.any());
   if (!is_block() || !speed_was_stated_ || !search_.sticks || is_nonlinear) return;
   kinematics::PlateauRatio ratio = plateau_ratio(motion_, plateaus_in_motion(), search_.blocks.length);
   const double rounding = kinematics::rounding_of_level(samples_->velocity_step(), search_.noise);

@@ -48,7 +48,8 @@ class MotionStages {
   void undo_zero_drift();
   void find_zero();
   void undo_zero();
-  void undo_compression();
+  void undo_velocity_response();
+  void undo_friction_response();
   void undo_stated_low_pass();
   void undo_low_pass();
   void undo_clock_drift();

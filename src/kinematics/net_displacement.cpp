@@ -137,68 +137,27 @@ BlockZero find_zero_of_relative(const Trace& trace, const PlateauSearch& search,
   return zero;
 }
 
-void add_zero(const BlockZero& zero, bool speed_was_stated, double compression, HealthItem& item) {
+void add_zero(const BlockZero& zero, bool speed_was_stated, const UndoneResponse& response, HealthItem& item) {
   if (zero.kind == BlockZero::Kind::none) return;
   const bool is_zero = zero.kind == BlockZero::Kind::zero;
-  item.status =
-      is_zero || compression != 0 ? std::max(item.status, HealthItem::Status::warning) : HealthItem::Status::problem;
-  const bool is_guess = std::abs(compression) > kSureOfCompression;
-  if (is_guess && !is_zero) item.status = HealthItem::Status::problem;
+  item.status = is_zero || response.any() ? std::max(item.status, HealthItem::Status::warning)
+                                          : HealthItem::Status::problem;
   item.message += fmt::format("; the block has no net displacement, but its mean velocity is {} mm/s: ",
                               general(1e3 * zero.mean.value, 3));
+  const double part = response.response.part;
   item.message +=
       is_zero ? "the velocity has a zero error; corrected"
-      : compression != 0
-          ? fmt::format("the velocity channel is nonlinear: the gain is {} % {} at the highest speed; corrected{}",
-                        general(100 * std::abs(compression), 3), compression > 0 ? "less" : "more",
-                        is_guess ? " with a cubic characteristic, mu_k and the law's decay (alpha) are unreliable" : "")
+      : response.any()
+          ? fmt::format("the velocity channel is nonlinear: its gain is {} % {} {}; corrected",
+                        general(100 * std::abs(part), 3), part > 0 ? "less" : "more",
+                        response.response.form == StaticResponse::Form::one_sided ? "against the disc"
+                                                                                  : "at the highest speed")
       : speed_was_stated
           ? "the velocity channel is nonlinear, or samples are missing; mu_k and the law's decay (alpha) are "
             "unreliable"
           : "the velocity has a zero error, or its channel is nonlinear (mu_k and the law's decay (alpha) are then "
             "unreliable); give "
             "--speed to decide";
-}
-
-double decompressed(double reading, double part, double fastest) {
-  constexpr int kSteps = 4;  // of Newton's method, from the reading: each squares what is left
-  double v = reading;
-  for (int k = 0; k < kSteps; ++k) {
-    const double square = part * std::pow(v / fastest, 2);
-    v -= (v * (1 - square) - reading) / std::max(0.1, 1 - 3 * square);
-  }
-  return v;
-}
-
-Compression find_compression(const Trace& trace, const PlateauSearch& search, const Estimate& mean) {
-  Compression found;
-  for (const double v : trace.velocity) found.fastest = std::max(found.fastest, std::abs(v));
-  if (!(found.fastest > 0)) return found;
-  std::vector<double> velocity(trace.size());
-  const auto mean_at = [&](double part) {
-    std::transform(trace.velocity.begin(), trace.velocity.end(), velocity.begin(),
-                   [&](double v) { return decompressed(v, part, found.fastest); });
-    return mean_velocity(trace.time, velocity, search).value;
-  };
-  // Secants: the mean is nearly a straight line of the part.
-  double before = 0, mean_before = mean.value, part = 0.01;
-  constexpr int kSecants = 6;
-  double slope = 0;
-  for (int k = 0; k < kSecants && std::abs(part) < 2 * kMostCompressed; ++k) {
-    const double here = mean_at(part);
-    if (here == mean_before || part == before) break;
-    slope = (here - mean_before) / (part - before);
-    before = part, mean_before = here;
-    part -= here / slope;
-  }
-  if (!(std::abs(part) <= kMostCompressed) || slope == 0) return found;
-  // From the largest reading to what it stands for.
-  const double true_fastest = decompressed(found.fastest, part, found.fastest);
-  const double scale = std::pow(true_fastest / found.fastest, 2);
-  found.fastest = true_fastest;
-  // Another characteristic would lose as much elsewhere in the slip.
-  found.part = {scale * part, scale * std::hypot(mean.std_error / slope, kOtherCharacteristic * part)};
-  return found;
 }
 
 }  // namespace tribofit::kinematics

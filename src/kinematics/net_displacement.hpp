@@ -46,19 +46,7 @@ BlockZero find_zero(const PlateauSearch& search, const Disc& disc, const BlockPo
 /// The same of a v_r that was measured and rests nowhere: a plateau is off zero by as much as the mean is off omega r.
 BlockZero find_zero_of_relative(const Trace& trace, const PlateauSearch& search, const Disc& disc);
 
-/// Adds what was found to the check of the plateau. compression: what was undone of the velocity's gain [1].
-void add_zero(const BlockZero& zero, bool speed_was_stated, double compression, HealthItem& item);
-
-/// v_meas = v_b (1 - part (v_b/fastest)^2): a gain that falls towards the fastest v_b.
-struct Compression {
-  Estimate part;       ///< [1]; 0: none of this kind
-  double fastest = 0;  ///< [m/s]
-};
-
-/// What was read as v_meas.
-double decompressed(double reading, double part, double fastest);
-
-/// The part by which the block goes nowhere. mean: of v_meas, from stick to stick (see BlockZero). Cost: a few passes.
-Compression find_compression(const Trace& trace, const PlateauSearch& search, const Estimate& mean);
+/// Adds what was found to the check of the plateau. response: of the velocity, that was undone.
+void add_zero(const BlockZero& zero, bool speed_was_stated, const UndoneResponse& response, HealthItem& item);
 
 }  // namespace tribofit::kinematics

@@ -71,11 +71,12 @@ void high_pass(std::vector<double>& v, double rate, double corner, double drift)
   }
 }
 
-/// The gain falls by `part` at the fastest.
-void compress(std::vector<double>& v, double part) {
-  const Extremes range = v.empty() ? Extremes{} : extremes(v);
-  const double fastest = std::max(range.high, -range.low);
-  for (double& value : v) value *= 1 - part * std::pow(value / fastest, 2);
+/// The full scale of the response is the largest of the record, on the side of `direction`.
+void respond(std::vector<double>& x, StaticResponse response, double direction) {
+  if (!response.any() || x.empty()) return;
+  const Extremes range = extremes(x);
+  response.full_scale = std::copysign(std::max(range.high, -range.low), direction);
+  for (double& value : x) value = response.reading(value);
 }
 
 /// A channel that runs ahead by `drift` of the time, on straight lines between samples.
@@ -162,6 +163,7 @@ std::vector<double> sensed_friction(std::vector<double> mu, const SimulatedMotio
   }
   if (sensors.friction_low_pass > 0) low_pass(mu, 2 * std::numbers::pi * sensors.friction_low_pass / motion.rate);
   if (sensors.friction_delay != 0) sense(InstrumentValue::vibrometer_delay, &sensors.friction_delay);
+  respond(mu, sensors.friction_response, 1);
   return mu;
 }
 
@@ -175,7 +177,7 @@ std::vector<double> sensed_velocity(std::vector<double> v, const SimulatedMotion
     const double corner = sensors.velocity_high_pass;
     high_pass(v, motion.rate, corner, 2 * std::numbers::pi * corner * sensors.velocity_gain * away);
   }
-  if (sensors.velocity_compression != 0) compress(v, sensors.velocity_compression);
+  respond(v, sensors.velocity_response, motion.stated_speed < 0 ? -1 : 1);  // not stated: NaN
   if (sensors.velocity_low_pass > 0) low_pass(v, 2 * std::numbers::pi * sensors.velocity_low_pass / motion.rate);
   for (double& value : v) value += sensors.velocity_zero;
   run_ahead(v, sensors.clock_drift);

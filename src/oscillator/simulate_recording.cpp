@@ -25,7 +25,8 @@ Sensors true_sensors(const Sensors& stated, const FrictionModel& model, std::spa
     if constexpr (requires { E::velocity_high_pass(q); }) sensors.velocity_high_pass = E::velocity_high_pass(q);
     if constexpr (requires { E::velocity_zero(q); }) sensors.velocity_zero = E::velocity_zero(q);
     if constexpr (requires { E::velocity_low_pass(q); }) sensors.velocity_low_pass = E::velocity_low_pass(q);
-    if constexpr (requires { E::velocity_compression(q); }) sensors.velocity_compression = E::velocity_compression(q);
+    if constexpr (requires { E::velocity_response(q); }) sensors.velocity_response = E::velocity_response(q);
+    if constexpr (requires { E::friction_response(q); }) sensors.friction_response = E::friction_response(q);
     if constexpr (requires { E::friction_low_pass(q); }) sensors.friction_low_pass = E::friction_low_pass(q);
     if constexpr (requires { E::clock_drift(q); }) sensors.clock_drift = E::clock_drift(q);
   });

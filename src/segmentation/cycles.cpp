@@ -213,6 +213,8 @@ void measure_cycle(const Motion& motion, const std::vector<std::size_t>& gaps, s
     c.break_away_friction_std_error =
         std::hypot(at_break.level.std_error, at_break.slope * c.break_away_time_std_error);
     c.stick_slope = at_break.slope;
+    // A drive that rests and turns round unloads the contact first: the slip does not begin at a break-away.
+    if (c.break_away_friction < 0) c.break_away_friction = c.break_away_friction_std_error = c.stick_slope = unknown;
     if (c.stick_complete && !torn(cycles[k - 1].slip.begin, c.stick.end)) {
       c.stick_time = c.break_away_time - cycles[k - 1].restick_time;
     }

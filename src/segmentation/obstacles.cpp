@@ -49,7 +49,10 @@ std::vector<std::string> obstacles(const Motion& motion, const Segmentation& seg
   std::vector<std::string> found;
   if (is_constant(motion.friction))
     found.emplace_back("friction is the same in every sample: the channel was not recorded");
-  if (is_constant(motion.relative_velocity) && !motion.sticks && motion.velocity_kind != VelocityKind::fixed_block)
+  // A sliding speed that is the same throughout is what a drive was set to.
+  const bool is_set = motion.velocity_kind == VelocityKind::fixed_block ||
+                      (motion.velocity_kind == VelocityKind::relative && motion.relative_velocity.front() != 0);
+  if (is_constant(motion.relative_velocity) && !motion.sticks && !is_set)
     found.emplace_back("the velocity is the same in every sample: the channel was not recorded");
   if (found.empty() && must_slip && segmentation.kind == MotionKind::always_sticking)
     found.emplace_back("nothing slips in this trace: there is no friction law to fit");

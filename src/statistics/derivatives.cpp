@@ -155,9 +155,14 @@ LocalDerivatives local_derivatives(std::span<const double> signal, double step, 
         std::min(piece.begin > 0 ? i - piece.begin : half, piece.end < n ? piece.end - 1 - i : half);
     if (!whole && free < half && free >= kFewest / 2 && i >= free && i + free < n) best = &narrower[free - kFewest / 2];
     double least = whole ? left_about[i - half] : 0;
+    std::array<double, 2> slopes = {};  // before the sample and behind it, where it may be the corner
     if (whole && least > kCornerSquares * usual) {
+      const double about_sample = least;
       for (const std::size_t at : tried) {
-        if (i < at || !piece.holds(i - at, count) || kBetterWindow * left_beside[i - at] > least) continue;
+        if (i < at || !piece.holds(i - at, count)) continue;
+        const bool is_better = kBetterWindow * left_beside[i - at] <= about_sample;
+        if (is_better && (at == 0 || at + 1 == count)) slopes[at == 0] = places[at](1, signal, i) / step;
+        if (kBetterWindow * left_beside[i - at] > least) continue;
         best = &places[at];
         least = left_beside[i - at] / kBetterWindow;
       }
@@ -165,7 +170,8 @@ LocalDerivatives local_derivatives(std::span<const double> signal, double step, 
     out.value[i] = (*best)(0, signal, i);
     out.slope[i] = (*best)(1, signal, i) / step;
     out.second_derivative[i] = (*best)(2, signal, i) / (step * step);
-    out.slope_std_error[i] = widening * out.noise * best->noise_gain[1] / step;
+    const double unknown = slopes[0] != 0 && slopes[1] != 0 ? 0.5 * (slopes[1] - slopes[0]) : 0;
+    out.slope_std_error[i] = std::hypot(widening * out.noise * best->noise_gain[1] / step, unknown);
     out.second_derivative_std_error[i] = widening * out.noise * best->noise_gain[2] / (step * step);
     const double of_itself = best->weights[0](static_cast<Eigen::Index>(best->at));
     if (of_itself < 1) squares += std::pow((signal[i] - out.value[i]) / (1 - of_itself), 2);

@@ -18,7 +18,8 @@ struct LocalDerivatives {
 /// J. E. Golay, Anal. Chem. 36 (1964) 1627, doi:10.1021/ac60214a047), of fourth degree about a sample. Where the signal
 /// has a corner nearby, of third degree over a window that ends before it or begins behind it: of several windows that
 /// hold the sample the one that leaves least (I. Gijbels, A. Lambert, P. Qiu, J. Nonparametric Statistics 19 (2007)
-/// 77, doi:10.1080/10485250601097312). Errors are those of independent noise, as large as most windows show it.
+/// 77, doi:10.1080/10485250601097312). At a corner itself, which the window that ends there follows and the one that
+/// begins there, half of the difference of their slopes is an error too. Errors are those of independent noise, as large as most windows show it.
 /// A signal shorter than a window: shorter windows; fewer than 7 samples: all derivatives are 0.
 /// corners: first samples behind corners that are known, ascending: windows beside one are narrower, none reaches over
 /// it, and where two are too near for a window between them, errors are ten times as large. Cost: proportional to

@@ -15,7 +15,7 @@ import contract
 
 # In the order in which data flow. The pipeline is no directory but include/tribofit/pipeline.hpp and src/pipeline.cpp: it
 # calls the modules above it for one trace; what deals with many traces or with its results lies below it.
-MODULES = ["execution", "statistics", "output", "ingest", "kinematics", "segmentation", "friction", "oscillator", "fit",
+MODULES = ["execution", "statistics", "output", "ingest", "instruments", "kinematics", "segmentation", "friction", "oscillator", "fit",
          "diagnosis", "study", "pipeline", "campaign", "report", "workbench"]
 # What a module must know nothing of, as it would appear in an #include.
 STRANGERS = {

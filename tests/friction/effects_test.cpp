@@ -171,6 +171,7 @@ TEST(Effects, SayWhatTheirEquationSaysAtAPoint) {
       {"velocity-offset", {1e-3}, {}, mu},
       {"velocity-bandwidth", {500}, {}, mu},
       {"velocity-compression", {0.1}, {}, mu},
+      {"friction-compression", {0.1}, {}, mu},
       {"clock-drift", {1e-4}, {}, mu},
   };
   expect_points(points, mu);

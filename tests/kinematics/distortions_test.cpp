@@ -65,7 +65,8 @@ void expect_none(const Motion& motion) {
   EXPECT_FALSE(motion.velocity_zero.any()) << motion.velocity_zero.value;
   EXPECT_FALSE(motion.velocity_low_pass.any()) << motion.velocity_low_pass.value;
   EXPECT_FALSE(motion.friction_low_pass.any()) << motion.friction_low_pass.value;
-  EXPECT_FALSE(motion.compression.any()) << motion.compression.value;
+  EXPECT_FALSE(motion.velocity_response.any()) << motion.velocity_response.response.part;
+  EXPECT_FALSE(motion.friction_response.any()) << motion.friction_response.response.part;
   EXPECT_FALSE(motion.clock_drift.any()) << motion.clock_drift.value;
 }
 
@@ -244,10 +245,74 @@ TEST(Distortions, ACompressedGainIsFoundAndUndone) {
       Trace trace = sound;
       for (double& v : trace.velocity) v *= 1 - part * std::pow(v / most, 2);
       const Motion motion = compute_motion(slowed(std::move(trace), s));
-      EXPECT_LT(std::abs(motion.compression.value - part), 3 * motion.compression.std_error) << part << " " << s;
+      const UndoneResponse& found = motion.velocity_response;
+      EXPECT_EQ(found.response.form, StaticResponse::Form::square) << part << " " << s;
+      EXPECT_LT(std::abs(found.response.part - part), 3 * found.std_error) << part << " " << s;
       EXPECT_LT(off(motion, slowed(sound, s)), 5e-3) << part << " " << s;
     }
   }
+}
+
+/// The force balance tells it from a gain that falls with the speed: both leave no net displacement.
+TEST(Distortions, AGainThatDiffersByDirectionIsFoundAndUndone) {
+  const Trace sound = truth::simulate(rig_of(3)).trace;
+  for (const double s : kSlower) {
+    for (const double gain : {0.97, 0.92, 1.05}) {
+      Trace trace = sound;
+      for (double& v : trace.velocity) v *= v < 0 ? gain : 1;
+      const Motion motion = compute_motion(slowed(std::move(trace), s));
+      const UndoneResponse& found = motion.velocity_response;
+      EXPECT_EQ(found.response.form, StaticResponse::Form::one_sided) << gain << " " << s;
+      EXPECT_LT(std::abs(found.response.part - (1 - gain)), 3 * found.std_error) << gain << " " << s;
+      EXPECT_LT(off(motion, slowed(sound, s)), 5e-3) << gain << " " << s;
+    }
+  }
+}
+
+/// Largest difference of friction in stick, where it is known from the spring, over the largest friction.
+double friction_off(const Motion& motion, const Trace& sound) {
+  double most = 0, largest = 0;
+  for (std::size_t i = 0; i + 64 < sound.size(); i += 64) {
+    double mean = 0, truth = 0;
+    for (std::size_t k = i; k < i + 64; ++k) mean += motion.friction[k] / 64, truth += sound.friction[k] / 64;
+    most = std::max(most, std::abs(mean - truth)), largest = std::max(largest, truth);
+  }
+  return most / largest;
+}
+
+TEST(Distortions, ABentFrictionIsFoundInStickAndUndone) {
+  const Trace sound = truth::simulate(rig_of(3)).trace;
+  double most = 0;
+  for (const double mu : sound.friction) most = std::max(most, std::abs(mu));
+  for (const double s : kSlower) {
+    for (const double part : {0.03, 0.1, 0.2}) {
+      Trace square = sound, linear = sound, saturated = sound;
+      for (double& mu : square.friction) mu *= 1 - part * std::pow(mu / most, 2);
+      for (double& mu : linear.friction) mu *= 1 - part * std::abs(mu) / most;
+      const double limit = most / std::sqrt(3 * part);  // tanh x = x (1 - x^2/3 ...)
+      for (double& mu : saturated.friction) mu = limit * std::tanh(mu / limit);
+      for (const Trace& trace : {square, linear, saturated}) {
+        const Motion motion = compute_motion(slowed(trace, s));
+        EXPECT_LT(friction_off(motion, sound), 3 * motion.friction_response.std_error) << part << " " << s;
+        EXPECT_LT(friction_off(motion, sound), 0.02) << part << " " << s;
+        EXPECT_FALSE(motion.velocity_response.any()) << part << " " << s;
+      }
+      const Motion motion = compute_motion(slowed(std::move(square), s));
+      EXPECT_LT(std::abs(motion.friction_response.response.part - part), 3 * motion.friction_response.std_error)
+          << part << " " << s;
+    }
+  }
+}
+
+/// A spring that hardens bends friction the other way, and is none of its channel.
+TEST(Distortions, FrictionThatRisesEverFasterInStickIsLeft) {
+  Trace trace = truth::simulate(rig_of(3)).trace;
+  const std::vector<double> sound = trace.friction;
+  for (double& mu : trace.friction) mu *= 1 + 0.1 * std::pow(mu / 0.5, 2);
+  const std::vector<double> read = trace.friction;
+  const Motion motion = compute_motion(std::move(trace));
+  EXPECT_FALSE(motion.friction_response.any());
+  EXPECT_EQ(motion.friction, read);
 }
 
 TEST(Distortions, ClocksThatRunApartAreFoundAndUndone) {

@@ -52,6 +52,7 @@ const std::vector<Row>& rows() {
       {"velocity-offset", {.sizes = {0.3, 1}, .either_sign = true}},
       {"velocity-bandwidth", {.sizes = {800, 400, 200}}},
       {"velocity-compression", {.sizes = {0.05, 0.1}, .either_sign = true}},
+      {"friction-compression", {.sizes = {0.03, 0.1, 0.2}}},
       {"clock-drift", {.sizes = {1e-4, 2e-4}, .either_sign = true}},
       {"interference", {.sizes = {0.005, 0.012}, .others = {{.choices = {50, 60, 133}}, kAnyPhase}}},
   };

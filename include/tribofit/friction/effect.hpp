@@ -72,9 +72,10 @@ struct Motion;
 ///   double true_radius(p, double stated)                friction radius [m]
 ///   SpeedSwing speed_swing(p)                           how the speed of the disc swings with its angle
 ///   double velocity_gain(p), velocity_high_pass(p)      of the vibrometer [1], [Hz]
-///   double velocity_zero(p), velocity_low_pass(p), velocity_compression(p), clock_drift(p)
-///                                                       of the vibrometer [m/s], [Hz], [1], [1]
+///   double velocity_zero(p), velocity_low_pass(p), clock_drift(p)
+///                                                       of the vibrometer [m/s], [Hz], [1]
 ///   double friction_low_pass(p)                         of the friction channel [Hz]
+///   StaticResponse velocity_response(p), friction_response(p)    of either channel, without its full scale
 ///   double load_at_contact(p, double load, double mu)   normal force [N]
 ///   double reading_delay(p)                             how much later than the velocity friction is read [s]
 ///   double mass_below_sensor(p)                         [kg]

@@ -9,6 +9,7 @@
 
 #include "tribofit/ingest/instruments.hpp"
 #include "tribofit/ingest/trace.hpp"
+#include "tribofit/instruments/static_response.hpp"
 #include "tribofit/kinematics/health.hpp"
 #include "tribofit/statistics/estimate.hpp"
 
@@ -100,9 +101,9 @@ struct Motion {
   /// The same of friction [s], which stays as it was read: a law is evaluated and then filtered.
   Estimate friction_low_pass;
   FilterSource friction_filter_source = FilterSource::unknown;
-  Estimate compression;               ///< c of v_meas = v_b (1 - c (v_b/fastest_velocity)^2), undone [1]
-  double fastest_velocity = 0;        ///< largest |v_b|, where that was undone [m/s]
+  UndoneResponse velocity_response, friction_response;
   Estimate clock_drift;               ///< by which friction fell behind the velocity, over time [1]
+  double restick_delay = 0;           ///< by which friction jumps after v_r comes to rest [s]; 0: not known
   bool sticks = false;                ///< the trace has a plateau of stick
   StickRule stick;                    ///< as the user said
   double clock_offset_std_error = 0;  ///< as in Trace [s]; NaN: not known
@@ -139,7 +140,7 @@ struct MotionOptions {
   bool trim = true;               ///< cut the run-up where the plateau is not within 2 % of its final value
   bool undo_high_pass = true;     ///< undo a first-order high-pass found on the velocity
   bool undo_speed_ripple = true;  ///< let omega r follow a ripple found on the plateaus
-  bool undo_distortions = true;   ///< zero, low-pass and compression of the velocity, clocks that run apart
+  bool undo_distortions = true;   ///< zero, low-pass and response of the velocity, response of friction, clocks
   /// Move friction by the delay of a declared bandwidth; false: the model that is fitted holds the filter itself.
   bool undo_bandwidth = true;
   PlateauCorrection plateau = PlateauCorrection::none;

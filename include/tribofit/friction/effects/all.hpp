@@ -41,14 +41,14 @@
 namespace tribofit {
 
 /// The one list of effects: friction, rig, measurement, in the order in which they act; what acts in stick last of the
-/// memories. The last three are not part of the catalogue: forms of others, and the user's own (see formula.hpp).
+/// memories. The last four are not part of the catalogue: forms of others, and the user's own (see formula.hpp).
 using EffectAlternatives =
     std::variant<Viscous, StribeckExponent, FrictionalLag, RateState, Bristle, ContactSpin, Ageing, Asymmetry,
                  Hysteresis, Heating, RunIn, Drift, StepChange, LoadDependence, TemperatureDependence, Runout,
                  DiscPattern, SpeedRipple, LoadCoupling, Ringing, Backlash, SensorInertia, SensorOffset, ZeroDrift,
                  Crosstalk, ForceBandwidth, ChannelDelay, RadiusOffset, VelocityGain, VelocityHighPass, VelocityOffset,
-                 VelocityBandwidth, VelocityCompression, ClockDrift, Interference, ForceLowPass, RateStateHealing,
-                 Formula>;
+                 VelocityBandwidth, VelocityCompression, FrictionCompression, ClockDrift, Interference, ForceLowPass,
+                 VelocityGainByDirection, RateStateHealing, Formula>;
 
 /// One effect of the list. What it takes to copy, move and destroy thirty types is compiled once, in catalogue.cpp.
 class Effect : public EffectAlternatives {

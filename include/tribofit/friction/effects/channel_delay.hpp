@@ -34,6 +34,7 @@ struct ChannelDelay {
                             .upper = 5,
                             .neutral = 0,
                             .bound_scaling = BoundScaling::with_slip_time,
+                            .search = ParameterSearch::jump_at_restick,
                             .start_grid_points = 4}},
             .excitation = {.changing_speed = true},
             .group = EffectGroup::measurement,

@@ -99,18 +99,87 @@ struct VelocityCompression {
             .needs = {.plateau = true},
             .excitation = {.stated_plateau = true},
             .group = EffectGroup::measurement,
-            .sketch = {.view = SketchView::curve, .values = {0.2}}};
+            .sketch = {.view = SketchView::curve, .values = {0.2}},
+            .forms = {{"by-direction", "against the disc the gain is another, at any speed"}}};
   }
 
   static FoundBeforeFit found_before_fit(const Motion& motion, const Estimate& /*load_coupling*/) {
-    if (!motion.compression.any()) return {};
-    return {.values = {{motion.compression.value, motion.compression.std_error}},
+    return found_response(motion.velocity_response, false);
+  }
+
+  /// one_sided: whether it is asked for a gain that differs by direction.
+  static FoundBeforeFit found_response(const UndoneResponse& found, bool one_sided) {
+    if (!found.any() || (found.response.form == StaticResponse::Form::one_sided) != one_sided) return {};
+    return {.values = {{found.response.part, found.std_error}},
             .reason =
                 "the plateau of stick is omega r, but the block would have a net displacement; it was corrected before "
                 "the law was fitted"};
   }
 
-  static double velocity_compression(const double* p) { return p[0]; }
+  static StaticResponse velocity_response(const double* p) {
+    return {.form = StaticResponse::Form::square, .part = p[0]};
+  }
+};
+
+/// A form of velocity-compression: velocities against the disc are read with another gain.
+struct VelocityGainByDirection {
+  static constexpr std::string_view key = VelocityCompression::key;
+  static constexpr bool kinematic_effect = true;
+
+  static EffectInfo info() {
+    EffectInfo info = VelocityCompression::info();
+    info.option = "by-direction";
+    info.forms.clear();
+    info.statement = "the vibrometer reads velocities against the disc with another gain than those with it";
+    info.equation = "v_meas = v_b (1 - c) where v_b runs against the disc";
+    info.source = "even part of a characteristic; c from no net displacement, the form from force balance";
+    info.experiment = "let the disc turn the other way: the other half of the slips is then read wrongly";
+    info.parameters[0].description = "part of the gain that is lost against the disc";
+    return info;
+  }
+
+  static FoundBeforeFit found_before_fit(const Motion& motion, const Estimate& /*load_coupling*/) {
+    return VelocityCompression::found_response(motion.velocity_response, true);
+  }
+
+  static StaticResponse velocity_response(const double* p) {
+    return {.form = StaticResponse::Form::one_sided, .part = p[0]};
+  }
+};
+
+/// The gain of the friction channel falls towards the end of its range.
+struct FrictionCompression {
+  static constexpr std::string_view key = "friction-compression";
+  static constexpr bool kinematic_effect = true;
+
+  static EffectInfo info() {
+    return {.key = std::string(key),
+            .statement = "the gain of the force sensor or its amplifier falls towards its limit",
+            .equation = "reading = mu (1 - c (mu/mu_max)^2), or (1 - c mu/mu_max), mu_max the largest",
+            .source = "characteristic of an amplifier, textbook; in rigid stick friction is the force of the spring, "
+                      "k x, a straight line over the displacement of the block",
+            .experiment = "load the sensor with weights: its reading then rises in a straight line, or does not",
+            .parameters = {{.name = "c",
+                            .description = "part of the gain that is lost at the largest friction",
+                            .lower = 0,
+                            .upper = 0.5,
+                            .neutral = 0}},
+            .needs = {.plateau = true},
+            .group = EffectGroup::measurement,
+            .sketch = {.view = SketchView::curve, .values = {0.2}}};
+  }
+
+  static FoundBeforeFit found_before_fit(const Motion& motion, const Estimate& /*load_coupling*/) {
+    const UndoneResponse& found = motion.friction_response;
+    if (!found.any()) return {};
+    return {.values = {{found.response.part, found.std_error}},
+            .reason = "in stick friction rises ever slower over the displacement of the block, the same in every cycle; "
+                      "it was corrected before the law was fitted"};
+  }
+
+  static StaticResponse friction_response(const double* p) {
+    return {.form = StaticResponse::Form::square, .part = p[0]};
+  }
 };
 
 /// The channels have clocks of their own, and the velocity runs ahead of friction (positive) or falls behind.

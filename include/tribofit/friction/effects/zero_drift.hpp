@@ -11,7 +11,7 @@ struct ZeroDrift {
     return {.key = std::string(key),
             .statement = "the zero of the force sensor drifts along a straight line in time",
             .equation = "reading = mu + b t",
-            .source = "temperature of strain gauges and amplifiers; visible only where v_r takes both signs",
+            .source = "temperature of strain gauges and amplifiers; a drift of friction itself is larger where friction is",
             .experiment = "read the sensor without a force before and after the run",
             .parameters = {{.name = "b",
                             .description = "change of the reading without a force in unit time",
@@ -22,9 +22,9 @@ struct ZeroDrift {
                             .scales_with_friction = true,
                             .bound_scaling = BoundScaling::against_duration}},
             .needs = {.time = true},
-            .excitation = {.both_directions = true},
+            .excitation = {.changing_speed = true},
             .group = EffectGroup::measurement,
-            .sketch = {.view = SketchView::directions, .values = {0.002}}};
+            .sketch = {.view = SketchView::time, .values = {0.002}}};
   }
 
   template <class T>

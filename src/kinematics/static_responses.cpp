@@ -1,0 +1,252 @@
+#include "static_responses.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "limits.hpp"
+#include "statistics/reductions.hpp"
+#include "tribofit/statistics/quantiles.hpp"
+
+namespace tribofit::kinematics {
+namespace {
+
+using Form = StaticResponse::Form;
+
+std::vector<double> running_sum(const std::vector<double>& values) {
+  std::vector<double> sums(values.size());
+  double sum = 0;
+  for (std::size_t b = 0; b < values.size(); ++b) sum += values[b], sums[b] = sum;
+  return sums;
+}
+
+/// Slope of where the block is in the middles of the plateaus, over blocks [m/s].
+double mean_velocity_of(const std::vector<double>& velocity, const std::vector<StickPlateau>& runs) {
+  const std::vector<double> position = running_sum(velocity);
+  std::vector<double> at, where;
+  for (const StickPlateau& run : runs) {
+    const std::size_t middle = (run.begin + run.end) / 2;
+    at.push_back(static_cast<double>(middle));
+    where.push_back(position[middle]);
+  }
+  const Eigen::Map<const Eigen::ArrayXd> x(at.data(), static_cast<Eigen::Index>(at.size())),
+      y(where.data(), static_cast<Eigen::Index>(where.size()));
+  return ((x - x.mean()) * y).sum() / (x - x.mean()).square().sum();
+}
+
+/// Mean square of friction that displacement, velocity and acceleration of the block leave, each cycle about its mean.
+/// Beside re-stick friction and acceleration jump, and blocks there are left out.
+double left_by_balance(const std::vector<double>& friction, const std::vector<double>& velocity,
+                       const std::vector<StickPlateau>& runs) {
+  const std::vector<double> position = running_sum(velocity);
+  Eigen::Matrix4d sums = Eigen::Matrix4d::Zero();
+  constexpr std::size_t kBesideJump = 2;
+  double count = 0;
+  for (std::size_t k = 0; k + 1 < runs.size(); ++k) {
+    Eigen::Matrix4d products = Eigen::Matrix4d::Zero();
+    Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+    double n = 0;
+    for (std::size_t b = runs[k].begin + kBesideJump; b + kBesideJump < runs[k + 1].begin; ++b) {
+      const Eigen::Vector4d row(position[b], velocity[b], velocity[b + 1] - velocity[b - 1], friction[b]);
+      products += row * row.transpose();
+      sum += row;
+      ++n;
+    }
+    if (n == 0) continue;
+    sums += products - sum * sum.transpose() / n;
+    count += n;
+  }
+  const Eigen::Vector3d scale = sums.diagonal().head<3>().cwiseSqrt().cwiseMax(std::numeric_limits<double>::min());
+  const Eigen::Matrix3d normal = scale.cwiseInverse().asDiagonal() * sums.topLeftCorner<3, 3>() *
+                                 scale.cwiseInverse().asDiagonal();
+  const Eigen::Vector3d right = sums.col(3).head<3>().cwiseQuotient(scale);
+  return (sums(3, 3) - normal.ldlt().solve(right).dot(right)) / std::max(1.0, count);
+}
+
+/// The response of one form with which the block goes nowhere; part: its slope over the mean velocity.
+UndoneResponse response_without_displacement(const PlateauSearch& search, StaticResponse response,
+                                             const Estimate& mean) {
+  const double read = std::abs(response.full_scale), direction = response.full_scale < 0 ? -1 : 1;
+  std::vector<double> velocity(search.blocks.mean.size());
+  const auto mean_at = [&](double part) {
+    response.part = part;
+    // From the largest reading to what it stands for.
+    const bool grows = response.form != Form::one_sided;
+    response.full_scale = direction * read / (grows ? 1 - part : 1);
+    std::transform(search.blocks.mean.begin(), search.blocks.mean.end(), velocity.begin(),
+                   [&](double v) { return response.undone(v); });
+    return mean_velocity_of(velocity, search.plateaus.runs);
+  };
+  // Secants: the mean is nearly a straight line of the part.
+  double before = 0, mean_before = mean_at(0), part = 0.01, slope = 0;
+  constexpr int kSecants = 6;
+  for (int k = 0; k < kSecants && std::abs(part) < 2 * kMostCompressed; ++k) {
+    const double here = mean_at(part);
+    if (here == mean_before || part == before) break;
+    slope = (here - mean_before) / (part - before);
+    before = part, mean_before = here;
+    part -= here / slope;
+  }
+  if (!(std::abs(part) <= kMostCompressed) || slope == 0) return {};
+  mean_at(part);
+  // Another characteristic of the same form would lose as much elsewhere in the slip.
+  return {response, std::hypot(mean.std_error / slope, kOtherCharacteristic * part)};
+}
+
+/// The blocks of a plateau about its middle in which the velocity is at rest but for noise: where sticks are short
+/// beside slips, the ends of a plateau slide.
+StickPlateau at_rest(const PlateauSearch& search, const StickPlateau& run) {
+  const double most = std::max(kPieceNoise * search.noise, kRestDepth * search.plateaus.depth);
+  const auto rests = [&](std::size_t b) {
+    const double disc = search.disc.mean.empty() ? 0 : search.disc.mean[b];
+    return std::abs(search.blocks.mean[b] - disc - run.level) <= most;
+  };
+  StickPlateau rest{(run.begin + run.end) / 2, (run.begin + run.end) / 2, run.level};
+  while (rest.begin > run.begin && rests(rest.begin - 1)) --rest.begin;
+  while (rest.end < run.end && rests(rest.end)) ++rest.end;
+  return rest;
+}
+
+/// Friction in one stick, block by block, over something that grows in a straight line there.
+struct Ramp {
+  Eigen::ArrayXd friction, base;
+};
+
+/// By how much the part of a response that was undone is too small, and what sticks disagree by.
+struct Bend {
+  double part = 0, std_error = 0;
+  std::array<double, 2> halves = {};
+  std::vector<double> left;  ///< squares of each stick
+};
+
+/// Each stick has a line of its own. What a response makes of it is taken from the line, not from noisy readings.
+Bend bend_of(const std::vector<Ramp>& ramps, const StaticResponse& undone) {
+  std::vector<double> products, squares;
+  Bend out;
+  for (const Ramp& ramp : ramps) {
+    const Eigen::ArrayXd x = ramp.base - ramp.base.mean();
+    const auto without_line = [&](const Eigen::ArrayXd& y) {
+      return Eigen::ArrayXd(y - y.mean() - (x * y).sum() / x.square().sum() * x);
+    };
+    const Eigen::ArrayXd y = ramp.friction.unaryExpr([&](double mu) { return undone.undone(mu); });
+    const Eigen::ArrayXd off = without_line(y), line = y - off;
+    const Eigen::ArrayXd bend = without_line(line.unaryExpr([&](double mu) { return undone.slope(mu); }));
+    products.push_back(-(off * bend).sum());
+    squares.push_back(bend.square().sum());
+    // As it was read: what is undone has more noise where the gain is less.
+    out.left.push_back((off * line.unaryExpr([&](double mu) { return undone.gain(mu); })).square().sum());
+  }
+  const auto part_of = [&](std::size_t begin, std::size_t end) {
+    double product = 0, square = 0;
+    for (std::size_t k = begin; k < end; ++k) product += products[k], square += squares[k];
+    return square > 0 ? product / square : 0;
+  };
+  const std::size_t n = ramps.size();
+  out.part = part_of(0, n);
+  out.halves = {part_of(0, n / 2), part_of(n / 2, n)};
+  double scatter = 0, square = 0;
+  for (std::size_t k = 0; k < n; ++k)
+    scatter += std::pow(products[k] - out.part * squares[k], 2), square += squares[k];
+  out.std_error = square > 0 ? std::sqrt(scatter) / square : 0;
+  return out;
+}
+
+/// The part of a form with which ramps are straight, and what is left then.
+Bend straightened(const std::vector<Ramp>& ramps, StaticResponse& response) {
+  constexpr int kRounds = 8;
+  const double read = response.full_scale;
+  Bend found;
+  for (int round = 0; round < kRounds; ++round) {
+    found = bend_of(ramps, response);
+    if (round == 0) response.part = found.part;
+    if (round > 0) response.part += found.part;
+    if (std::abs(response.part) > 2 * kMostCompressed) return {};
+    response.full_scale = read / (1 - response.part);
+  }
+  return found;
+}
+
+/// A response of one form, and what sticks say of it.
+struct Straightened {
+  UndoneResponse found;
+  std::vector<double> left;
+};
+
+/// The better one of two forms. Where sticks do not tell them apart, half of their difference is an error too.
+UndoneResponse better_of(const Straightened& a, const Straightened& b) {
+  if (!a.found.any() || !b.found.any()) return a.found.any() ? a.found : b.found;
+  const Eigen::Map<const Eigen::ArrayXd> left_a(a.left.data(), static_cast<Eigen::Index>(a.left.size())),
+      left_b(b.left.data(), static_cast<Eigen::Index>(b.left.size()));
+  const Eigen::ArrayXd more = left_b - left_a;
+  UndoneResponse best = more.sum() >= 0 ? a.found : b.found;
+  if (std::abs(more.sum()) < kZeroErrors * std::sqrt((more - more.mean()).square().sum()))
+    best.std_error = std::hypot(best.std_error, 0.5 * (a.found.response.part - b.found.response.part));
+  return best;
+}
+
+}  // namespace
+
+UndoneResponse find_velocity_response(const Trace& trace, const PlateauSearch& search, const Estimate& mean) {
+  double fastest = 0;
+  for (const double v : trace.velocity) fastest = std::max(fastest, std::abs(v));
+  if (!(fastest > 0)) return {};
+  const BlockMeans friction = block_means(trace.friction, search.blocks.length, search.blocks.step);
+  UndoneResponse best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Form form : {Form::square, Form::linear, Form::one_sided}) {
+    const StaticResponse none{form, 0, std::copysign(fastest, search.plateaus.level)};
+    const UndoneResponse found = response_without_displacement(search, none, mean);
+    if (!found.any()) continue;
+    std::vector<double> velocity = search.blocks.mean;
+    for (double& v : velocity) v = found.response.undone(v);
+    const double left = left_by_balance(friction.mean, velocity, search.plateaus.runs);
+    if (left < least) least = left, best = found;
+  }
+  return best;
+}
+
+UndoneResponse find_friction_response(const Trace& trace, const PlateauSearch& search) {
+  const std::vector<StickPlateau>& runs = search.plateaus.runs;
+  if (runs.size() < 2 * kFewestPeriods) return {};
+  const std::size_t length = search.blocks.length;
+  BlockMeans friction = block_means(trace.friction, length, search.blocks.step);
+  if (!trace.load.empty()) {  // the spring pulls with a force
+    const BlockMeans load = block_means(trace.load, length, search.blocks.step);
+    const double usual = mean_of(load.mean);
+    for (std::size_t b = 0; b < load.mean.size(); ++b) friction.mean[b] *= load.mean[b] / usual;
+  }
+  const std::vector<double> position = running_sum(search.blocks.mean);
+  const std::vector<double> turned = search.disc.mean.empty() ? std::vector<double>() : running_sum(search.disc.mean);
+  std::array<std::vector<Ramp>, 2> ramps;  // over the displacements of the block, and of the disc
+  const double largest = largest_of(friction.mean);
+  for (const StickPlateau& run : runs) {
+    const StickPlateau rest = at_rest(search, run);
+    const std::size_t first = rest.inner_begin(), size = rest.inner_end() - first;
+    if (size < kFewestBlocks) continue;
+    const auto part = [&](const std::vector<double>& values) {
+      return Eigen::Map<const Eigen::ArrayXd>(values.data() + first, static_cast<Eigen::Index>(size));
+    };
+    const auto n = static_cast<Eigen::Index>(size);
+    ramps[0].push_back({part(friction.mean), part(position)});
+    ramps[1].push_back({part(friction.mean), turned.empty() ? Eigen::ArrayXd(Eigen::ArrayXd::LinSpaced(n, 0, 1))
+                                                            : Eigen::ArrayXd(part(turned))});
+  }
+  if (ramps[0].size() < 2 * kFewestPeriods) return {};
+  const auto straighten = [&](Form form) -> Straightened {
+    StaticResponse response{form, 0, largest};
+    const Bend first = bend_of(ramps[0], response), other = bend_of(ramps[1], response);
+    const double error = std::hypot(first.std_error, other.std_error), part = first.part;
+    const bool agrees = std::abs(first.halves[0] - first.halves[1]) < kHalvesAgree * part + kZeroErrors * error &&
+                        std::abs(part - other.part) < kHalvesAgree * part + kZeroErrors * error;
+    if (!agrees || part < std::max(kLeastBend, kSignificance * first.std_error)) return {};
+    const Bend straight = straightened(ramps[0], response);
+    if (straight.std_error == 0 || response.part < kLeastBend || response.part > kMostCompressed) return {};
+    return {{response, std::hypot(straight.std_error, kOtherCharacteristic * response.part)}, straight.left};
+  };
+  return better_of(straighten(Form::square), straighten(Form::linear));
+}
+
+}  // namespace tribofit::kinematics
