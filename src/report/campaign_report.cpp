@@ -1,10 +1,9 @@
-#include "campaign_report.hpp"
+#include "campaign_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "report/charts/campaign_figures.hpp"
 #include "report_parts.hpp"
 #include "tribofit/campaign/compare.hpp"
 
@@ -307,7 +306,6 @@ Report report_of(const ResultReader& results, std::span<const RunResult> runs, c
                  const std::optional<ComparisonReport>& comparison, const ReportOptions& options) {
   const DrawnCampaign campaign(results, runs, pooled, comparison);
   const std::string folder = results.plan().folder.empty() ? results.folder() : results.plan().folder;
-  const std::string input = options.inputs.empty() ? folder : options.inputs.front();
   const auto fitted = static_cast<std::size_t>(
       std::count_if(runs.begin(), runs.end(), [](const RunResult& r) { return r.run.status == RunStatus::ok; }));
   Report report = titled_report("campaign", file_name(folder), "Campaign", lead_of(campaign, fitted, pooled.trends));
@@ -334,7 +332,7 @@ Report report_of(const ResultReader& results, std::span<const RunResult> runs, c
   }
   report.add({pooled_section(pooled), trends_section(pooled.trends)});
   if (options.charts) report.add({runs_section(campaign, std::move(listed))});
-  report.add({run_section(report, command_line(options, {}, input), {},
+  report.add({run_section(report, command_line(options.arguments, {options.inputs_or(folder).front()}), {},
                           " Checksums of the traces stand in the results of the runs.")});
   limit_tables(report);
   return report;

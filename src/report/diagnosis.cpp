@@ -4,8 +4,7 @@
 #include <utility>
 
 #include "diagnosis/conclusions.hpp"
-#include "diagnosis_sentences.hpp"
-#include "report/charts/diagnosis_charts.hpp"
+#include "diagnosis_parts.hpp"
 #include "report_parts.hpp"
 #include "segmentation/counts.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -192,7 +191,9 @@ ReportTable effects_table(const Diagnosis& d, const Motion& motion) {
   ReportTable table("What became of each effect");
   table.text({"effect", "status"}).numbers({"held-out error", "error taken away", "p"}).text({"parameters", "why"});
   table.folded = true;
-  for (const EffectFinding* f : sorted_findings(d, Order::status)) {
+  std::vector<const EffectFinding*> findings = sorted_findings(d);
+  std::ranges::stable_sort(findings, {}, &EffectFinding::status);
+  for (const EffectFinding* f : findings) {
     std::string parameters;
     if (f->status == EffectStatus::found || f->status == EffectStatus::equivalent) {
       for (const FitParameter& p : f->parameters) {

@@ -10,8 +10,6 @@
 namespace tribofit {
 namespace {
 
-constexpr double kMicrometre = 1e-6;
-
 std::string critical_stiffness_text(const RateStateFit& fit) {
   return fit.states > 1 ? "k_c of two states" : "k_c = (b - a)/D_c";
 }

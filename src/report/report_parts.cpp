@@ -153,10 +153,4 @@ ReportSection run_section(const Report& report, const std::string& command, std:
   return section;
 }
 
-ReportSection run_section(const Report& report, const std::string& verb, const ReportOptions& options,
-                          const Identification& trace) {
-  const std::string path = options.inputs.empty() ? trace.path : options.inputs.front();
-  return run_section(report, command_line(words_of({verb}, options.arguments), {path}), {&trace, 1});
-}
-
 }  // namespace tribofit

@@ -85,10 +85,6 @@ ReportSection result_section(const Report& report, const std::string& title = "R
 ReportSection run_section(const Report& report, const std::string& command, std::span<const Identification> traces = {},
                           const std::string& more = "");
 
-/// The same of a command that takes a trace: `verb` with the user's own options.
-ReportSection run_section(const Report& report, const std::string& verb, const ReportOptions& options,
-                          const Identification& trace);
-
 /// A quantity of the rig, in the unit people read.
 struct ShownRigValue {
   const char* name;

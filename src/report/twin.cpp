@@ -161,35 +161,31 @@ Chart differences_chart(const Twin& twin) {
 /// The measured motion and those of the twins over time, as portraits, and alive.
 ReportSection motion_section(const Twin& twin, const std::string& unit) {
   ReportSection section{"motion", "Measured and simulated motion", {}};
-  std::vector<DrawnMotion> motions;
-  if (twin.measured.size() > 0) motions.push_back(drawn_motion("measured", twin.measured));
-  for (std::size_t c = 0; c < twin.simulated.size(); ++c) {
-    if (twin.simulated[c].size() == 0) continue;
-    motions.push_back(drawn_motion("simulated, " + twin.short_name(c), twin.simulated[c]));
-  }
-  if (motions.empty()) return section;
-  Chart chart{
-      .id = "twin-motion",
-      .title = "Three cycles, measured and simulated",
-      .note =
-          "Both begin at a break-away; the simulated cycles are those of one simulation, with numbers drawn within "
-          "the errors and a scatter of its own. Shaded: stick as measured.",
-      .x = {.quantity = "time since break-away", .unit = "s", .digits = 7},
-      .height = 640};
   const double disc = twin.measured.disc_velocity;
-  Chart portrait = portrait_plane("twin-portrait", "Portraits, measured and simulated", disc);
+  std::vector<DrawnMotion> motions;
   Animation alive{.id = "twin-block",
                   .title = "The block on its disc",
                   .note = "Three cycles each, from break-away to break-away.",
-                  .disc_velocity = disc / kMillimetre,
-                  .blocks = motions};
-  for (std::size_t k = 0; k < motions.size(); ++k) {
-    add_over_time(motions[k], {unit == "N" ? "friction" : "mu", unit}, stroke_for(k), chart);
-    add_loop(motions[k], stroke_for(k), portrait);
+                  .disc_velocity = disc / kMillimetre};
+  const auto add = [&](const std::string& name, const auto& motion) {
+    if (motion.size() == 0) return;
+    alive.blocks.push_back(drawn_motion(name, motion));
+    motions.push_back({alive.blocks.back(), stroke_for(motions.size())});
+  };
+  add("measured", twin.measured);
+  for (std::size_t c = 0; c < twin.simulated.size(); ++c) {
+    add("simulated, " + twin.short_name(c), twin.simulated[c]);
   }
-  shade_sticks(drawn_motion("measured", twin.measured), chart);
-  if (twin.measured.size() > 0) chart.marks.push_back(disc_mark(disc));
-  for (Chart* one : {&chart, &portrait}) section.add(std::move(*one));
+  if (motions.empty()) return section;
+  Chart chart = motion_chart("twin-motion", "Three cycles, measured and simulated", disc,
+                             {unit == "N" ? "friction" : "mu", unit}, motions);
+  chart.note =
+      "Both begin at a break-away; the simulated cycles are those of one simulation, with numbers drawn within the "
+      "errors and a scatter of its own. Shaded: stick as measured.";
+  chart.x.quantity = "time since break-away";
+  chart.height = 640;
+  section.add(std::move(chart));
+  section.add(portrait_chart("twin-portrait", "Portraits, measured and simulated", disc, motions));
   section.add(std::move(alive));
   return section;
 }
@@ -239,9 +235,10 @@ Report report_of(const TwinIdentification& result, const ReportOptions& options)
         twin.simulations));
     report.add({motion_section(twin, friction_unit(trace.motion)), std::move(measures), twin_model(result)});
   }
+  const std::string command = command_line(words_of({"twin"}, options.arguments), options.inputs_or(trace.path));
   report.add({{"health", "Health of the data", {health_table({&trace, 1})}, Medium::page},
               std::move(end),
-              run_section(report, "twin", options, trace)});
+              run_section(report, command, {&trace, 1})});
   return report;
 }
 

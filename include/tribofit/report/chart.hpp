@@ -41,7 +41,6 @@ struct ChartAxis {
   bool logarithmic = false;
   bool falling = false;                 ///< from high to low
   std::vector<std::string> names = {};  ///< of the values 0, 1, 2 ... where the axis counts things
-  int digits = 5;                       ///< of the numbers over this axis; times need more
   double part = 1;                      ///< height of a panel beside that of the others
 };
 

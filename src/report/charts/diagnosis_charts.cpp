@@ -1,5 +1,3 @@
-#include "report/charts/diagnosis_charts.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +5,7 @@
 
 #include "diagnosis/conclusions.hpp"
 #include "report/charts/styles.hpp"
-#include "report/diagnosis_sentences.hpp"
+#include "report/diagnosis_parts.hpp"
 #include "report/numbers.hpp"
 
 namespace tribofit {
@@ -84,12 +82,11 @@ Chart where_chart(const DiagnosedTraces& result) {
   return chart;
 }
 
-std::vector<const EffectFinding*> sorted_findings(const Diagnosis& d, Order by) {
+std::vector<const EffectFinding*> sorted_findings(const Diagnosis& d) {
   std::vector<const EffectFinding*> order;
   for (const EffectFinding& finding : d.effects) order.push_back(&finding);
-  const auto error = [](const EffectFinding* f) { return std::isfinite(f->held_out_rmse) ? f->held_out_rmse : 1e300; };
-  std::stable_sort(order.begin(), order.end(), [&](const EffectFinding* a, const EffectFinding* b) {
-    return by == Order::status && a->status != b->status ? a->status < b->status : error(a) < error(b);
+  std::ranges::stable_sort(order, {}, [](const EffectFinding* finding) {
+    return std::isfinite(finding->held_out_rmse) ? finding->held_out_rmse : 1e300;
   });
   return order;
 }
@@ -100,11 +97,10 @@ Chart candidates_chart(const DiagnosedTraces& result) {
                              "Sorted by the error. Each was judged last at a rung of its own, so errors of different "
                              "statuses need not compare: what is superseded helps alone but not beside what was added, "
                              "even where its error here is lower. Bars are one standard error, from cycle to cycle.");
-  chart.panels[0].digits = 6;
   for (std::size_t k = 0; k < kStatusStrokes.size(); ++k) {
     chart.line(std::string(status_text(static_cast<EffectStatus>(k))), kStatusStrokes[k]).bars = true;
   }
-  for (const EffectFinding* finding : sorted_findings(d, Order::error)) {
+  for (const EffectFinding* finding : sorted_findings(d)) {
     const auto status = static_cast<std::size_t>(finding->status);
     if (status >= kStatusStrokes.size() || !std::isfinite(finding->held_out_rmse)) continue;
     ChartLine& line = chart.lines[status];

@@ -288,7 +288,7 @@ std::vector<Chart> profile_charts(const Fit& fit, const Motion& motion, const st
     if (p.profile.empty()) continue;
     const std::string name = full_name(p);
     Chart chart = half_chart(id + "-profile-" + name, "Profile likelihood of " + name,
-                             {.quantity = name, .unit = shown_unit(p, motion), .digits = 9},
+                             {.quantity = name, .unit = shown_unit(p, motion)},
                              {.quantity = "rise / that of 95 %", .unit = "1", .from_zero = true});
     chart.note =
         "Rise of the squares with this parameter held and all others refitted, in units of the rise at which the 95 % "
