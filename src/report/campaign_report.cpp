@@ -132,9 +132,9 @@ ReportSection pooled_section(const Pooled& pooled) {
   for (const bool joint_alone : {true, false}) {
     section.add(repeats_table(pooled.groups, joint_alone), joint_alone ? Medium::terminal : Medium::page);
   }
-  const bool single = std::any_of(pooled.groups.begin(), pooled.groups.end(),
-                                  [](const PooledGroup& group) { return group.runs.size() == 1; });
-  if (single) section.plain("of one run what differs from run to run is not in its error", Medium::terminal);
+  const auto is_single = [](const PooledGroup& group) { return group.runs.size() == 1; };
+  if (std::ranges::any_of(pooled.groups, is_single))
+    section.plain("of one run what differs from run to run is not in its error", Medium::terminal);
   for (const SharedFit& fit : pooled.shared) {
     ReportTable table = values_table("Parameters that runs have in common, " + fit.law + " law", "shared.csv");
     for (const SharedFit::Parameter& common : fit.common) {

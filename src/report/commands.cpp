@@ -92,9 +92,10 @@ std::string folded_command(const std::string& command, std::size_t width) {
     text[i] = quoted || waits ? kNoBreak : ' ';
     if (text[i] == ' ') begin = i + 1;
   }
-  text = replaced(wrapped(text, width - 2, 6), "\n", " \\\n");
+  // The first line, which begins with "identify", stands four columns further left than the others.
+  text = "  " + text.substr(0, 4) + replaced(wrapped(text.substr(4), width - 2, 6), "\n", " \\\n");
   std::replace(text.begin(), text.end(), kNoBreak, ' ');
-  return "  " + text;
+  return text;
 }
 
 }  // namespace tribofit

@@ -41,14 +41,4 @@ Suggestion next_after_diagnosis(const DiagnosedTraces& result, const ReportOptio
 /// The diagnosis itself as a command, with the user's own options.
 std::string diagnose_command(const DiagnosedTraces& result, const ReportOptions& options);
 
-/// The ladder of held-out errors, as effects are added.
-Chart ladder_chart(const DiagnosedTraces& result);
-/// Error of the law and of the final model that goes with each variable, and the whole of it, on one scale.
-Chart where_chart(const DiagnosedTraces& result);
-/// Held-out error with each candidate.
-Chart candidates_chart(const DiagnosedTraces& result);
-
-/// Findings by their held-out error.
-std::vector<const EffectFinding*> sorted_findings(const Diagnosis& d);
-
 }  // namespace tribofit

@@ -20,7 +20,7 @@ std::string rgba(const Paint& paint) {
   return fmt::format("rgba({},{},{},{})", part(0), part(1), part(2), paint.opacity);
 }
 
-/// Everything about styles that the page must know, as CSS has it, under the names that lines, bars and stretches use.
+/// Everything about styles that the page must know, as CSS has it, under the names that lines and stretches use.
 Json styles_json() {
   Json json;
   for (std::size_t k = 0; k < kColours.size(); ++k) {
@@ -56,15 +56,13 @@ constexpr std::string_view to_string(ReportText::Kind kind) {
   return style_of(kind, kKinds);
 }
 
-TRIBOFIT_DESCRIBED(ChartAxis, quantity, unit, low, high, from_zero, logarithmic, falling, names, part);
+TRIBOFIT_DESCRIBED(ChartAxis, quantity, unit, low, high, from_zero, logarithmic, names, part);
 TRIBOFIT_DESCRIBED(Stroke, colour, dash, symbol, width, size, joined);
 TRIBOFIT_DESCRIBED(ChartLine, name, stroke, x, y, low, high, bars, shown, panel);
-TRIBOFIT_DESCRIBED(ChartBars, name, values, colour, hatched);
 TRIBOFIT_DESCRIBED(ChartMark, at, dash, upright, text, panel);
-TRIBOFIT_DESCRIBED(ChartLabel, x, y, text, panel);
 TRIBOFIT_DESCRIBED(HeatMap, x, y, z, quantity, unit, low, high, diverging, contours);
 TRIBOFIT_DESCRIBED(Stretch, from, to, shade);
-TRIBOFIT_DESCRIBED(Chart, id, title, note, height, half, x, panels, lines, bars, map, stretches, marks, labels);
+TRIBOFIT_DESCRIBED(Chart, id, title, note, height, half, x, panels, lines, map, stretches, marks);
 TRIBOFIT_DESCRIBED(ReportText, kind, text);
 TRIBOFIT_DESCRIBED(ReportFacts, facts);
 TRIBOFIT_DESCRIBED(ReportColumn, name, number);

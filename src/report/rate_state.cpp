@@ -78,8 +78,8 @@ std::string states_sentence(const RateStateAnalysis& analysis) {
 
 ReportTable steps_table(const RateStateAnalysis& analysis) {
   ReportTable table("Steps");
-  const bool moved = std::any_of(analysis.steps.begin(), analysis.steps.end(),
-                                 [](const VelocityStep& step) { return step.time != step.recorded; });
+  const bool moved =
+      !std::ranges::equal(analysis.steps, analysis.steps, {}, &VelocityStep::time, &VelocityStep::recorded);
   const bool over_time = analysis.detrend == Detrend::time;
   table.numbers({"no.", "time [s]"});
   if (moved) table.numbers({"recorded [s]"});

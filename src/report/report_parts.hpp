@@ -78,7 +78,7 @@ struct TraceSections {
 };
 
 /// How a text ends, but for what to do next: warnings and the lead of the report.
-ReportSection result_section(const Report& report, const std::string& title = "Result");
+ReportSection result_section(const Report& report);
 
 /// How a page ends. What was run: the command, the inputs with their checksums and how they were read, what to do next,
 /// and what made the report; `more` is said behind that.

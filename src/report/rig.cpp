@@ -120,9 +120,6 @@ Report report_of(const RigIdentification& result, const ReportOptions& options) 
   Report report = titled_report("rig", file_name(trace.path), "Mass, damping and stiffness,", verdict_on(rig));
   report.warnings = trace.warnings;
   report.next = {next_of(result, options)};
-  for (const ShownRigValue& q : shown_rig(rig)) {
-    if (q.value.determined) report.facts.emplace_back(q.name, q.text());
-  }
   add_facts(trace, report);
   ReportSection values{"rig", "Rig", {}};
   values.add(rig_table(rig));

@@ -122,12 +122,6 @@ Json twin_json(const TwinIdentification& result, const JsonOptions& options) {
                 next_after_twin(result, options.arguments).command);
 }
 
-Stroke stroke_for(std::size_t k) {
-  constexpr Colour kThree[] = {Colour::black, Colour::red, Colour::blue};
-  constexpr Dash kThreeDashes[] = {Dash::solid, Dash::dashed, Dash::dotted};
-  return {.colour = kThree[k % 3], .dash = kThreeDashes[k % 3], .width = k == 0 ? 1.8 : 1.4};
-}
-
 /// Differences in standard errors; within the marks they may be chance.
 Chart differences_chart(const Twin& twin) {
   Chart chart{.id = "twin-differences",
@@ -135,18 +129,16 @@ Chart differences_chart(const Twin& twin) {
               .note = fmt::format("Beyond {:g} standard errors a difference is not chance.", kTwinIsOff),
               .x = {.quantity = "difference", .unit = "standard errors"},
               .height = 130 + 26 * static_cast<int>(twin.measures.size())};
-  ChartAxis& names = chart.panels[0];
-  names.falling = true;
-  for (const TwinMeasure& m : twin.measures) names.names.push_back(m.name);
+  const std::size_t count = twin.measures.size();  // the first stands on top
+  for (std::size_t k = count; k-- > 0;) chart.panels[0].names.push_back(twin.measures[k].name);
   double largest = 4;
   for (std::size_t c = 0; c < twin.columns.size(); ++c) {
     ChartLine& line = chart.line(twin.short_name(c), marked(c + 1, false));
-    line.stroke.colour = stroke_for(c + 1).colour;
     line.stroke.size = 8;
-    for (std::size_t k = 0; k < twin.measures.size(); ++k) {
+    for (std::size_t k = 0; k < count; ++k) {
       const double d = twin.measures[k].simulated.at(c).difference;
       if (!std::isfinite(d)) continue;
-      line.add(d, static_cast<double>(k));
+      line.add(d, static_cast<double>(count - 1 - k));
       largest = std::max(largest, 1.1 * std::abs(d));
     }
   }
@@ -170,7 +162,7 @@ ReportSection motion_section(const Twin& twin, const std::string& unit) {
   const auto add = [&](const std::string& name, const auto& motion) {
     if (motion.size() == 0) return;
     alive.blocks.push_back(drawn_motion(name, motion));
-    motions.push_back({alive.blocks.back(), stroke_for(motions.size())});
+    motions.push_back({alive.blocks.back(), stroke_of(motions.size())});
   };
   add("measured", twin.measured);
   for (std::size_t c = 0; c < twin.simulated.size(); ++c) {
@@ -218,12 +210,6 @@ Report report_of(const TwinIdentification& result, const ReportOptions& options)
   }
   report.next = {next_after_twin(result, options.arguments)};
   add_facts(trace, report);
-  report.facts.emplace_back("simulations of each law", std::to_string(twin.simulations));
-  for (std::size_t c = 0; c < twin.columns.size(); ++c) {
-    const double rms = twin.rms_difference[c];
-    report.facts.emplace_back("off by, " + twin.short_name(c),
-                              std::isfinite(rms) ? fmt::format("{:.1f} standard errors", rms) : "-");
-  }
   report.add({std::move(first), record_section(trace)});
   if (twin.reason.empty() && !twin.columns.empty()) {
     ReportSection measures{"measures", "Measures in standard errors", {}};

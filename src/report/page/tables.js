@@ -52,7 +52,8 @@ function table(caption, header, rows, numeric = []) {
   const aligned = header.map((_, k) => (numeric.includes(k) ? { className: "number" } : isLong(k) ? { className: "words" } : {}));
   const cell = (tag, content, k, more = {}) => make(tag, { ...aligned[k], ...more }, symbols(String(content)));
   const whole = make("table", {}, caption ? make("caption", {}, symbols(caption)) : null,
-    make("thead", {}, make("tr", {}, ...header.map((name, k) => (name ? cell("th", name, k, { scope: "col" }) : make("td"))))),
+    make("thead", {}, make("tr", {},
+      ...header.map((name, k) => (name ? cell("th", name, k, { scope: "col" }) : make("td"))))),
     make("tbody", {}, ...rows.map((row) => make("tr", {}, ...header.map((_, k) => cell("td", row[k] ?? "", k))))));
   if (header.length > 8) whole.className = "wide";
   const box = make("div", { className: "scroll", tabindex: "0", role: "group", "aria-label": symbols(caption || "Table") }, whole);
