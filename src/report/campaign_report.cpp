@@ -80,7 +80,7 @@ ReportSection comparison_section(const EarlierComparison& comparison, std::span<
   return section;
 }
 
-/// Which law predicts better, over all runs and under each of the conditions; relative errors (Eq 5).
+/// Which law predicts better, over all runs and by conditions; relative errors (Eq 5).
 ReportSection statements_section(const Statements& s, std::span<const PooledGroup> groups) {
   ReportSection section{"statements", "Which law predicts better (joint fit, held-out cycles)", {}};
   const auto add = [&](const std::string& where, const LawPreference& p) {
@@ -106,7 +106,7 @@ ReportSection statements_section(const Statements& s, std::span<const PooledGrou
   return section;
 }
 
-/// What was fitted, whether sharing holds, and what it costs on held-out blocks.
+/// What was fitted, whether sharing holds, and what it costs.
 std::string sharing_sentence(const SharedFit& fit) {
   const SharedFit::Test& test = fit.test;
   std::string out;

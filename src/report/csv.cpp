@@ -100,8 +100,7 @@ void write_errors(WholeFolder& folder, const Identification& result, const std::
   }
 }
 
-/// Adds the files of one trace; `best` is the index of the fit they show, which is of `record` traces, and `before`
-/// cycles, before this one.
+/// The files of one trace with the fit `best`; `record` traces with `before` cycles stand before it.
 void add_files(WholeFolder& files, const Identification& trace, std::span<const Fit> fits, std::size_t best,
                std::size_t record = 0, std::size_t before = 0) {
   const Fit* shown = fits.empty() ? nullptr : &fits[best];

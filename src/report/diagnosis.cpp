@@ -39,8 +39,7 @@ std::vector<std::string> distinct(const DiagnosedTraces& result, Text text) {
   return out;
 }
 
-/// How a text begins: what was diagnosed; notes, warnings and problems of the data, each once, with the trace's name
-/// where there are several.
+/// What was diagnosed; notes, warnings and problems of the data, each once, with its trace where there are several.
 ReportSection traces_section(const DiagnosedTraces& result) {
   ReportSection section{"record", "", {}, Medium::terminal};
   const bool one = result.traces.size() == 1;
@@ -172,7 +171,7 @@ Chart candidates_chart(const DiagnosedTraces& result) {
   return chart;
 }
 
-/// Rungs and noise floor: name, room for a bar, held-out error, and how much of what is above the noise floor is gone.
+/// Rungs and noise floor: name, room for a bar, held-out error, and the share of it that is gone.
 ReportTable ladder_table(const DiagnosedTraces& result) {
   const Diagnosis& d = result.diagnosis;
   const std::string unit = level_unit(result);
@@ -227,7 +226,7 @@ void add_errors(const DiagnosedTraces& result, ReportSection& section) {
   if (d.ladder.size() > 1 && d.verdict == Verdict::unexplained) add_shares("What remains", d.remaining, section);
 }
 
-/// The final model whole: the law with its parameters, then what was found beside it, and the equations.
+/// The final model, then what was found beside it, and the equations.
 ReportSection law_section(const DiagnosedTraces& result, const Motion& motion) {
   ReportSection section{"whole-law", "", {}, Medium::terminal};
   static const std::vector<FitParameter> none;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kNames = 15;  // columns of names on a terminal
 
-/// What an effect needs beyond friction and velocity: in short, and in full. An empty name is left out.
+/// What an effect needs beyond friction and velocity, in short or in full.
 std::string channels_text(const Channels& needs, bool in_full) {
   const struct {
     bool is_needed;
@@ -44,7 +44,7 @@ std::string parameters_text(std::span<const Parameter> parameters) {
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-/// What the bounds are proportional to, as the end of a description; empty where they are the same on every rig.
+/// What the bounds are proportional to; empty where they are the same on every rig.
 std::string scaling_text(BoundScaling scaling) {
   using enum BoundScaling;
   constexpr std::pair<BoundScaling, const char*> kTexts[] = {

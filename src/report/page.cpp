@@ -20,7 +20,7 @@ std::string rgba(const Paint& paint) {
   return fmt::format("rgba({},{},{},{})", part(0), part(1), part(2), paint.opacity);
 }
 
-/// Everything about styles that the page must know, as CSS has it, under the names that lines and stretches use.
+/// The styles, as CSS has them, under the names that lines and stretches use.
 Json styles_json() {
   Json json;
   for (std::size_t k = 0; k < kColours.size(); ++k) {

@@ -75,7 +75,7 @@ std::string catalogue_experiment(const RunPlan& plan) {
   return {};
 }
 
-/// "8 rpm for 20 s", "9 mm at 8 rpm for 12 s, then 18 mm at 4 rpm for 24 s": what is different from `own`.
+/// "9 mm at 8 rpm for 12 s, then 18 mm at 4 rpm for 24 s": what is different from `own`.
 std::string experiment_text(const Experiment& experiment, const RunConditions& own) {
   if (experiment.tap > 0) return "tap the block";
   if (experiment.lift) return "lift the block off the disc and read the force sensor";

@@ -320,7 +320,7 @@ Json rate_state_fits_json(const RateStateAnalysis& analysis, const Motion& motio
     out.protocol = "joint";
     add_parameters(fit.parameters, fit.correlations, motion, out);
     const std::size_t n = fit.parameters.size();
-    // In the units in which the parameters are shown: of D and k the search has the covariance of the logarithm.
+    // In the units shown: of D and k the search has the covariance of the logarithm.
     const auto scale = [&](std::size_t k) {
       const FitParameter& p = fit.parameters[k];
       return p.parameter.unit != "1" ? shown(p, p.value) : 1.0;

@@ -95,8 +95,7 @@ std::string twin_verdict(const TwinIdentification& result) {
                     over_floor(result.trace.fits.back()));
 }
 
-/// Said first: the twin of a law that leaves clearly more than noise does not represent the machine. Empty where it
-/// does.
+/// Said first where the law leaves clearly more than noise: its twin does not represent the machine.
 std::string warning_of(const TwinIdentification& result, const std::vector<std::string>& arguments) {
   if (!result.twin.reason.empty() || !result.law_falls_short()) return "";
   const Fit& fit = result.trace.fits.back();

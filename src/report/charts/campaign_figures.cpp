@@ -113,7 +113,7 @@ Chart levels_chart(const DrawnCampaign& campaign, const OverConditions& over) {
   return chart.chart(560);
 }
 
-/// What the laws have besides mu_s and mu_k (alpha and beta, the rest of Table 4 of [D]): a panel each, both protocols.
+/// What laws have besides mu_s and mu_k (the rest of Table 4 of [D]): a panel each, both protocols.
 Chart other_parameters_chart(const DrawnCampaign& campaign, const OverConditions& over) {
   MeansChart chart(campaign, over, "table4-decay", "Other parameters of the laws");
   std::vector<std::string> names;

@@ -58,8 +58,7 @@ bool has_loop(const Fit& fit) {
   return !fit.model.effects().empty();
 }
 
-/// Bands over speed: of the measurement, then of what each model leaves, then of what each says along the slips, where
-/// that is a loop.
+/// Bands over speed: of the measurement, of what each model leaves, then of what each says, where that is a loop.
 std::vector<std::vector<BranchBand>> bands_of(const DrawnTrace& d) {
   const std::size_t models = d.models.size();
   std::vector<std::vector<BranchBand>> bands(1 + 2 * models);

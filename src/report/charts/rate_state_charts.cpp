@@ -19,7 +19,7 @@ const std::string& unit_of_friction(const RateStateAnalysis& analysis) {
   return analysis.fits[analysis.best].parameters.front().parameter.unit;
 }
 
-/// What was measured between two displacements from an origin, and what the laws make of it, the best on top.
+/// What was measured between two displacements, and what the laws make of it, the best on top.
 void add_step(const RateStateAnalysis& analysis, const RateStateCurve& curve, double origin, double from, double to,
               Chart& chart) {
   const auto add = [&](const std::string& name, const std::vector<double>& values, const Stroke& stroke) {

@@ -32,7 +32,7 @@ ChartLine& add_drawn(const DrawnTrace& d, const Window& w, const std::string& na
   return line;
 }
 
-/// Friction with its models above; below v_b with the disc where the block moves against one of known speed, else v_r.
+/// Friction with its models; below v_b with a disc of known speed, else v_r.
 Chart window_chart(const DrawnTrace& d, const Window& w, bool with_models) {
   const Motion& motion = d.trace.motion;
   const bool varies = !motion.disc_velocity.empty();
@@ -118,7 +118,7 @@ ShownCycles shown_cycles(const DrawnTrace& d) {
   return {first, begin, std::min(d.trace.motion.size(), tail.slip.end + margin)};
 }
 
-/// Amplitudes of v_r up to twelve times the stick-slip frequency, or the whole band where nothing repeats.
+/// Amplitudes of v_r, up to twelve times the stick-slip frequency where there is one.
 Chart spectrum_chart(const DrawnTrace& d) {
   const Motion& motion = d.trace.motion;
   const std::vector<double>& v_r = motion.relative_velocity;

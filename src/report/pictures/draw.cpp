@@ -44,8 +44,7 @@ Path points_of(const Panel& panel, const ChartLine& line, const std::vector<doub
   return points;
 }
 
-/// Runs of points that are finite, without those that are not distinguishable on paper (Douglas and Peucker 1973): no
-/// peak is lost.
+/// Runs of finite points, without those that paper does not show (Douglas and Peucker 1973): no peak is lost.
 std::vector<Path> thinned_runs(const Path& points) {
   std::vector<Path> runs;
   for (auto begin = points.begin(), end = begin; begin != points.end(); begin = end) {
