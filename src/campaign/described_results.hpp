@@ -82,9 +82,7 @@ constexpr auto description(const Estimate*) {
   });
 }
 
-constexpr auto description(const OtherCondition*) {
-  return described("name", &OtherCondition::name, "value", &OtherCondition::value);
-}
+TRIBOFIT_DESCRIBED(OtherCondition, name, value);
 
 void read_json(const Json& json, RunStatus& status);
 
@@ -104,21 +102,9 @@ constexpr auto description(const ResultParameter*) {
                    "at_bound", &P::at_bound, "determined", &P::determined);
 }
 
-constexpr auto description(const ResultFit::Correlated*) {
-  return described("parameters", &ResultFit::Correlated::parameters, "value", &ResultFit::Correlated::value);
-}
-
-constexpr auto description(const ErrorFigures*) {
-  using E = ErrorFigures;
-  return described("rmse", &E::rmse, "mean_relative", &E::mean_relative, "max_relative", &E::max_relative,
-                   "held_out_rmse", &E::held_out_rmse);
-}
-
-/// The parts of the noise floor.
-constexpr auto description(const Floor*) {
-  return described("noise", &Floor::noise, "scatter", &Floor::scatter, "level_scatter", &Floor::level_scatter,
-                   "slow_noise", &Floor::slow_noise, "source", &Floor::source);
-}
+TRIBOFIT_DESCRIBED(ResultFit::Correlated, parameters, value);
+TRIBOFIT_DESCRIBED(ErrorFigures, rmse, mean_relative, max_relative, held_out_rmse);
+TRIBOFIT_DESCRIBED(Floor, noise, scatter, level_scatter, slow_noise, source);
 
 constexpr auto description(const ResultFit*) {
   using F = ResultFit;
@@ -150,9 +136,7 @@ constexpr auto description(const RunResult*) {
                    stick_slip_members, "fits", &R::fits, "best", or_null(&R::best), "warnings", &R::warnings);
 }
 
-constexpr auto description(const PlannedRun*) {
-  return described("name", &PlannedRun::name, "file", &PlannedRun::file, "settings", &PlannedRun::settings);
-}
+TRIBOFIT_DESCRIBED(PlannedRun, name, file, settings);
 
 constexpr auto description(const CampaignPlan*) {
   return described("folder", or_null(&CampaignPlan::folder), "runs", &CampaignPlan::runs, "problems",

@@ -76,10 +76,7 @@ constexpr auto description(const Observations*) {
                    condensed_in(kMillimetre * kMillimetre, &O::velocity_variance));
 }
 
-constexpr auto description(const CondensedRun::OfFit*) {
-  using F = CondensedRun::OfFit;
-  return described("law", &F::law, "effects", &F::effects, "lower", &F::lower, "upper", &F::upper);
-}
+TRIBOFIT_DESCRIBED(CondensedRun::OfFit, law, effects, lower, upper);
 
 constexpr auto description(const CondensedRun*) {
   using R = CondensedRun;

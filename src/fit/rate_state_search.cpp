@@ -90,8 +90,6 @@ Parameter parameter_of(std::string name, std::string description, std::string un
   return out;
 }
 
-constexpr double kMicrometre = 1e-6;
-
 void add(RateStateUnknowns& unknowns, Parameter parameter, bool logarithmic, double lower, double upper) {
   parameter.lower = lower / parameter.si;
   parameter.upper = upper / parameter.si;

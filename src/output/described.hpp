@@ -35,6 +35,17 @@ constexpr Description<Parts...> described(Parts... parts) {
   return {{parts...}};
 }
 
+/// The description of a struct whose members stand in files under their own names: TRIBOFIT_DESCRIBED(Harmonic,
+/// frequency, amplitude);
+#define TRIBOFIT_MEMBER(member) #member, &Owner::member,
+#define TRIBOFIT_MEMBERS(...) NLOHMANN_JSON_EXPAND(NLOHMANN_JSON_PASTE(TRIBOFIT_MEMBER, __VA_ARGS__))
+#define TRIBOFIT_DESCRIBED(Struct, ...)                      \
+  constexpr auto description(const Struct*) {                \
+    using Owner = Struct;                                    \
+    return described(TRIBOFIT_MEMBERS(__VA_ARGS__) nullptr); \
+  }                                                          \
+  static_assert(true)
+
 template <class Struct>
 concept Described = requires(const Struct* one) {
   description(one);

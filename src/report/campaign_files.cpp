@@ -48,7 +48,7 @@ Json result_json(const RunResult& result) {
                 "best", result.fits.empty() ? Json(nullptr) : Json(result.best));
 }
 
-/// A row of summary.csv, values under the names of their columns: what every run has, further conditions, the analysis.
+/// A row of summary.csv by names of columns: what every run has, further conditions, the analysis.
 using SummaryRow = std::array<Json, 3>;
 
 void add_fit(const ResultFit& fit, const std::string& friction_unit, Json& row) {

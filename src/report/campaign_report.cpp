@@ -1,10 +1,9 @@
-#include "campaign_report.hpp"
+#include "campaign_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "report/charts/campaign_figures.hpp"
 #include "report_parts.hpp"
 #include "tribofit/campaign/compare.hpp"
 
@@ -81,7 +80,7 @@ ReportSection comparison_section(const EarlierComparison& comparison, std::span<
   return section;
 }
 
-/// Which law predicts better, over all runs and under each of the conditions; relative errors (Eq 5).
+/// Which law predicts better, over all runs and by conditions; relative errors (Eq 5).
 ReportSection statements_section(const Statements& s, std::span<const PooledGroup> groups) {
   ReportSection section{"statements", "Which law predicts better (joint fit, held-out cycles)", {}};
   const auto add = [&](const std::string& where, const LawPreference& p) {
@@ -107,7 +106,7 @@ ReportSection statements_section(const Statements& s, std::span<const PooledGrou
   return section;
 }
 
-/// What was fitted, whether sharing holds, and what it costs on held-out blocks.
+/// What was fitted, whether sharing holds, and what it costs.
 std::string sharing_sentence(const SharedFit& fit) {
   const SharedFit::Test& test = fit.test;
   std::string out;
@@ -133,9 +132,9 @@ ReportSection pooled_section(const Pooled& pooled) {
   for (const bool joint_alone : {true, false}) {
     section.add(repeats_table(pooled.groups, joint_alone), joint_alone ? Medium::terminal : Medium::page);
   }
-  const bool single = std::any_of(pooled.groups.begin(), pooled.groups.end(),
-                                  [](const PooledGroup& group) { return group.runs.size() == 1; });
-  if (single) section.plain("of one run what differs from run to run is not in its error", Medium::terminal);
+  const auto is_single = [](const PooledGroup& group) { return group.runs.size() == 1; };
+  if (std::ranges::any_of(pooled.groups, is_single))
+    section.plain("of one run what differs from run to run is not in its error", Medium::terminal);
   for (const SharedFit& fit : pooled.shared) {
     ReportTable table = values_table("Parameters that runs have in common, " + fit.law + " law", "shared.csv");
     for (const SharedFit::Parameter& common : fit.common) {
@@ -307,7 +306,6 @@ Report report_of(const ResultReader& results, std::span<const RunResult> runs, c
                  const std::optional<ComparisonReport>& comparison, const ReportOptions& options) {
   const DrawnCampaign campaign(results, runs, pooled, comparison);
   const std::string folder = results.plan().folder.empty() ? results.folder() : results.plan().folder;
-  const std::string input = options.inputs.empty() ? folder : options.inputs.front();
   const auto fitted = static_cast<std::size_t>(
       std::count_if(runs.begin(), runs.end(), [](const RunResult& r) { return r.run.status == RunStatus::ok; }));
   Report report = titled_report("campaign", file_name(folder), "Campaign", lead_of(campaign, fitted, pooled.trends));
@@ -334,7 +332,7 @@ Report report_of(const ResultReader& results, std::span<const RunResult> runs, c
   }
   report.add({pooled_section(pooled), trends_section(pooled.trends)});
   if (options.charts) report.add({runs_section(campaign, std::move(listed))});
-  report.add({run_section(report, command_line(options, {}, input), {},
+  report.add({run_section(report, command_line(options.arguments, {options.inputs_or(folder).front()}), {},
                           " Checksums of the traces stand in the results of the runs.")});
   limit_tables(report);
   return report;

@@ -27,10 +27,6 @@ std::string command_line(const std::vector<std::string>& words, const std::vecto
   return text;
 }
 
-std::string command_line(const ReportOptions& options, const std::vector<std::string>& more, const std::string& path) {
-  return command_line(joined(options.arguments, more), {path});
-}
-
 std::vector<std::string> words_of(std::vector<std::string> words, const std::vector<std::string>& arguments,
                                   const std::vector<std::string>& dropped) {
   const auto is_dropped = [&](const std::string& word) {
@@ -84,33 +80,21 @@ std::string csv_folder_for(const std::string& path) {
 }
 
 std::string folded_command(const std::string& command, std::size_t width) {
-  constexpr std::size_t kIndent = 2, kContinued = 6;
-  std::vector<std::string> parts(1);  // words; one in quotes is whole, and an option stays with its value
+  constexpr char kNoBreak = '\x1f';
+  std::string text = command;
   bool quoted = false;
-  for (std::size_t i = 0; i < command.size(); ++i) {
-    if (command[i] == '\'') quoted = !quoted;
-    const std::string& part = parts.back();
-    const bool is_option = part.starts_with("--") && part.find(' ') == std::string::npos;
-    if (command[i] == ' ' && !quoted && !(is_option && !command.substr(i + 1).starts_with('-'))) {
-      parts.emplace_back();
-    } else {
-      parts.back() += command[i];
-    }
+  std::size_t begin = 0;  // of a word; one in quotes is whole, and an option stays with its value
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\'') quoted = !quoted;
+    if (text[i] != ' ') continue;
+    const std::string_view word = std::string_view(text).substr(begin, i - begin);
+    const bool waits = word.starts_with("--") && word.find(kNoBreak) == word.npos && text[i + 1] != '-';
+    text[i] = quoted || waits ? kNoBreak : ' ';
+    if (text[i] == ' ') begin = i + 1;
   }
-  std::string text(kIndent, ' ');
-  std::size_t column = kIndent;
-  for (const std::string& part : parts) {
-    const std::size_t length = displayed(part);
-    if (column > kIndent && column + 1 + length + 2 > width) {
-      text += " \\\n" + std::string(kContinued, ' ');
-      column = kContinued;
-    } else if (column > kIndent) {
-      text += ' ';
-      ++column;
-    }
-    text += part;
-    column += length;
-  }
+  // The first line, which begins with "identify", stands four columns further left than the others.
+  text = "  " + text.substr(0, 4) + replaced(wrapped(text.substr(4), width - 2, 6), "\n", " \\\n");
+  std::replace(text.begin(), text.end(), kNoBreak, ' ');
   return text;
 }
 

@@ -12,10 +12,6 @@ namespace tribofit {
 /// `identify` with these words and inputs, as a shell reads them.
 std::string command_line(const std::vector<std::string>& words, const std::vector<std::string>& inputs);
 
-/// `identify` with the user's own options, `more` behind them, and the trace. options.arguments begins with the verb
-/// where there is one.
-std::string command_line(const ReportOptions& options, const std::vector<std::string>& more, const std::string& path);
-
 /// `verb` and the user's own options but for those `dropped`: flags, and "--protocol=" with its value.
 std::vector<std::string> words_of(std::vector<std::string> verb, const std::vector<std::string>& arguments,
                                   const std::vector<std::string>& dropped = {});

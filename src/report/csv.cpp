@@ -100,8 +100,7 @@ void write_errors(WholeFolder& folder, const Identification& result, const std::
   }
 }
 
-/// Adds the files of one trace; `best` is the index of the fit they show, which is of `record` traces, and `before`
-/// cycles, before this one.
+/// The files of one trace with the fit `best`; `record` traces with `before` cycles stand before it.
 void add_files(WholeFolder& files, const Identification& trace, std::span<const Fit> fits, std::size_t best,
                std::size_t record = 0, std::size_t before = 0) {
   const Fit* shown = fits.empty() ? nullptr : &fits[best];
@@ -114,15 +113,13 @@ void add_files(WholeFolder& files, const Identification& trace, std::span<const 
   write_errors(files, trace, model, member);
 }
 
-constexpr double kMicron = 1e-6;
-
 void write_response(WholeFolder& folder, const RateStateAnalysis& analysis) {
   WholeFile& file = folder.add("response.csv");
   file.write("step_number,time_s,load_point_um,mu,mu_model,mu_other\n");
   CsvLine line(kMeasuredDigits);
   for (const RateStateCurve& c : analysis.curves) {
     for (std::size_t i = 0; i < c.time.size(); ++i) {
-      line.add(c.step + 1, c.time[i], c.displacement[i] / kMicron, c.friction[i], c.model[i],
+      line.add(c.step + 1, c.time[i], c.displacement[i] / kMicrometre, c.friction[i], c.model[i],
                c.other.empty() ? std::nan("") : c.other[i]);
       file.write(line.take());
     }
@@ -133,9 +130,9 @@ void write_steps(WholeFolder& folder, const RateStateAnalysis& analysis) {
   const RateStateFit* whole = analysis.fitted() ? &analysis.fits[analysis.best] : nullptr;
   const auto row_of = [&](std::size_t s) {
     const VelocityStep step = s < analysis.steps.size() ? analysis.steps[s] : VelocityStep{};
-    Json row =
-        object("step_number", s + 1, "time_s", step.time, "time_std_error_s", step.time_std_error, "recorded_time_s",
-               step.recorded, "from_um_s", step.before / kMicron, "to_um_s", step.after / kMicron, "hold_s", step.hold);
+    Json row = object("step_number", s + 1, "time_s", step.time, "time_std_error_s", step.time_std_error,
+                      "recorded_time_s", step.recorded, "from_um_s", step.before / kMicrometre, "to_um_s",
+                      step.after / kMicrometre, "hold_s", step.hold);
     if (whole == nullptr) return row;
     const RateStateFit* own = analysis.each.empty()        ? (s == 0 ? whole : nullptr)
                               : analysis.each[s].converged ? &analysis.each[s]

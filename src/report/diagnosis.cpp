@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "diagnosis/conclusions.hpp"
-#include "diagnosis_sentences.hpp"
-#include "report/charts/diagnosis_charts.hpp"
+#include "diagnosis_parts.hpp"
+#include "report/charts/styles.hpp"
 #include "report_parts.hpp"
 #include "segmentation/counts.hpp"
 #include "tribofit/ingest/spelling.hpp"
@@ -39,8 +39,7 @@ std::vector<std::string> distinct(const DiagnosedTraces& result, Text text) {
   return out;
 }
 
-/// How a text begins: what was diagnosed; notes, warnings and problems of the data, each once, with the trace's name
-/// where there are several.
+/// What was diagnosed; notes, warnings and problems of the data, each once, with its trace where there are several.
 ReportSection traces_section(const DiagnosedTraces& result) {
   ReportSection section{"record", "", {}, Medium::terminal};
   const bool one = result.traces.size() == 1;
@@ -74,7 +73,105 @@ ReportSection traces_section(const DiagnosedTraces& result) {
   return section;
 }
 
-/// Rungs and noise floor: name, room for a bar, held-out error, and how much of what is above the noise floor is gone.
+/// A chart of held-out errors beside the noise floor.
+Chart errors_chart(const DiagnosedTraces& result, const char* id, const char* title, const char* note) {
+  const std::string unit = result.traces.empty() ? "1" : friction_unit(result.traces.front().motion);
+  return {.id = id,
+          .title = title,
+          .note = note,
+          .panels = {{.quantity = "held-out error", .unit = unit, .from_zero = true}},
+          .marks = {{result.diagnosis.floor_rmse, false, Dash::dashed, "noise floor"}}};
+}
+
+/// Of what was fitted, in the order of EffectStatus.
+constexpr std::array<Stroke, 5> kStatusStrokes = {
+    dots(Colour::red, Symbol::circle, 10), dots(Colour::purple, Symbol::diamond, 10),
+    dots(Colour::blue, Symbol::triangle_up, 9), dots(Colour::green, Symbol::square, 9),
+    dots(Colour::grey, Symbol::triangle_down, 9)};
+
+Chart ladder_chart(const DiagnosedTraces& result) {
+  const Diagnosis& d = result.diagnosis;
+  Chart chart = errors_chart(
+      result, "ladder", "The ladder: held-out error, as effects are added",
+      "Bars are one standard error. At the noise floor only noise and scatter from cycle to cycle are left.");
+  ChartLine& line = chart.line("held-out error", {Colour::blue, Dash::solid, Symbol::circle, 2, 10});
+  line.bars = true;
+  for (std::size_t k = 0; k < d.ladder.size(); ++k) {
+    const Rung& rung = d.ladder[k];
+    const auto x = static_cast<double>(k);
+    chart.x.names.push_back(rung.added.empty() ? law_text(d) : "+ " + rung.added);
+    line.add(x, rung.held_out_rmse, rung.held_out_std_error);
+    const double removed = k == 0 ? std::nan("") : removed_at(d, k);
+    if (std::isfinite(removed)) chart.marks.push_back({x, true, Dash::dotted, share_text(removed) + " gone"});
+  }
+  chart.marks[0].text += " " + significant(d.floor_rmse, 3);
+  chart.half = true;
+  return chart;
+}
+
+/// Error of the law and of the final model that goes with each variable, and the whole of it, on one scale.
+Chart where_chart(const DiagnosedTraces& result) {
+  const Diagnosis& d = result.diagnosis;
+  Chart chart{.id = "where",
+              .title = "Where the error goes: what it varies with",
+              .note = where_sentence(d.where) +
+                      " Each point is the error that a free function of the variable would take away; on top the whole "
+                      "held-out error. These errors overlap where variables go together.",
+              .x = {.quantity = "error", .unit = level_unit(result).empty() ? "1" : "N", .from_zero = true},
+              .marks = {{d.floor_rmse, true, Dash::dashed, "noise floor"}},
+              .height = 150 + 40 * static_cast<int>(std::max<std::size_t>(3, d.where.size() + 1)),
+              .half = true};
+  if (d.ladder.empty()) return chart;
+  std::vector<std::string>& names = chart.panels[0].names;
+  const auto add = [&](const std::string& model, const Rung& rung, const std::vector<Share>& shares, Stroke stroke) {
+    ChartLine& line = chart.line(model, stroke);
+    names.clear();
+    for (auto variable = d.where.rbegin(); variable != d.where.rend(); ++variable) {  // the largest on top
+      const auto share = std::ranges::find(shares, variable->variable, &Share::variable);
+      line.add(share == shares.end() ? 0 : error_of_share(share->share, rung.held_out_rmse, d.floor_rmse),
+               static_cast<double>(names.size()));
+      names.emplace_back(to_string(variable->variable));
+    }
+    line.add(rung.held_out_rmse, static_cast<double>(names.size()));
+    names.emplace_back("whole error");
+  };
+  add(law_text(d), d.ladder.front(), d.where, dots(Colour::blue, Symbol::circle, 9));
+  if (d.ladder.size() > 1) add("final model", d.ladder.back(), d.remaining, dots(Colour::red, Symbol::square, 8));
+  return chart;
+}
+
+/// By their held-out error.
+std::vector<const EffectFinding*> sorted_findings(const Diagnosis& d) {
+  std::vector<const EffectFinding*> order;
+  for (const EffectFinding& finding : d.effects) order.push_back(&finding);
+  std::ranges::stable_sort(order, {}, [](const EffectFinding* finding) {
+    return std::isfinite(finding->held_out_rmse) ? finding->held_out_rmse : 1e300;
+  });
+  return order;
+}
+
+Chart candidates_chart(const DiagnosedTraces& result) {
+  const Diagnosis& d = result.diagnosis;
+  Chart chart = errors_chart(result, "candidates", "Each candidate: held-out error with it",
+                             "Sorted by the error. Each was judged last at a rung of its own, so errors of different "
+                             "statuses need not compare: what is superseded helps alone but not beside what was added, "
+                             "even where its error here is lower. Bars are one standard error, from cycle to cycle.");
+  for (std::size_t k = 0; k < kStatusStrokes.size(); ++k) {
+    chart.line(std::string(status_text(static_cast<EffectStatus>(k))), kStatusStrokes[k]).bars = true;
+  }
+  for (const EffectFinding* finding : sorted_findings(d)) {
+    const auto status = static_cast<std::size_t>(finding->status);
+    if (status >= kStatusStrokes.size() || !std::isfinite(finding->held_out_rmse)) continue;
+    ChartLine& line = chart.lines[status];
+    line.add(static_cast<double>(chart.x.names.size()), finding->held_out_rmse, finding->held_out_std_error);
+    chart.x.names.push_back(finding->key);
+  }
+  if (!d.ladder.empty()) chart.marks.push_back({d.ladder.front().held_out_rmse, false, Dash::dotted, law_text(d)});
+  chart.height = 420;
+  return chart;
+}
+
+/// Rungs and noise floor: name, room for a bar, held-out error, and the share of it that is gone.
 ReportTable ladder_table(const DiagnosedTraces& result) {
   const Diagnosis& d = result.diagnosis;
   const std::string unit = level_unit(result);
@@ -129,7 +226,7 @@ void add_errors(const DiagnosedTraces& result, ReportSection& section) {
   if (d.ladder.size() > 1 && d.verdict == Verdict::unexplained) add_shares("What remains", d.remaining, section);
 }
 
-/// The final model whole: the law with its parameters, then what was found beside it, and the equations.
+/// The final model, then what was found beside it, and the equations.
 ReportSection law_section(const DiagnosedTraces& result, const Motion& motion) {
   ReportSection section{"whole-law", "", {}, Medium::terminal};
   static const std::vector<FitParameter> none;
@@ -147,8 +244,8 @@ ReportSection law_section(const DiagnosedTraces& result, const Motion& motion) {
     if (finding == nullptr || finding->parameters.empty()) continue;
     const std::string equation = info_of(result, rung.added).equation;
     if (!equation.empty()) equations.push_back(spelled(result, rung.added) + ": " + equation);
-    const bool in_fit = std::any_of(fitted.begin(), fitted.end(),
-                                    [&](const FitParameter& p) { return p.effect.starts_with(finding->key); });
+    const auto is_own = [&](const std::string& effect) { return effect.starts_with(finding->key); };
+    const bool in_fit = std::ranges::any_of(fitted, is_own, &FitParameter::effect);
     for (FitParameter p : in_fit ? none : finding->parameters) {
       p.effect = finding->key;
       beside.push_back(std::move(p));
@@ -192,7 +289,9 @@ ReportTable effects_table(const Diagnosis& d, const Motion& motion) {
   ReportTable table("What became of each effect");
   table.text({"effect", "status"}).numbers({"held-out error", "error taken away", "p"}).text({"parameters", "why"});
   table.folded = true;
-  for (const EffectFinding* f : sorted_findings(d, Order::status)) {
+  std::vector<const EffectFinding*> findings = sorted_findings(d);
+  std::ranges::stable_sort(findings, {}, &EffectFinding::status);
+  for (const EffectFinding* f : findings) {
     std::string parameters;
     if (f->status == EffectStatus::found || f->status == EffectStatus::equivalent) {
       for (const FitParameter& p : f->parameters) {

@@ -1,4 +1,4 @@
-#include "diagnosis_sentences.hpp"
+#include "diagnosis_parts.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/pictures/picture.hpp"
 #include "report_parts.hpp"
-#include "statistics/reductions.hpp"
 #include "tribofit/friction/state_evolution.hpp"
 #include "tribofit/report/terminal.hpp"
 #include "tribofit/study/fingerprint.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kNames = 15;  // columns of names on a terminal
 
-/// What an effect needs beyond friction and velocity: in short, and in full. An empty name is left out.
+/// What an effect needs beyond friction and velocity, in short or in full.
 std::string channels_text(const Channels& needs, bool in_full) {
   const struct {
     bool is_needed;
@@ -44,7 +44,7 @@ std::string parameters_text(std::span<const Parameter> parameters) {
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-/// What the bounds are proportional to, as the end of a description; empty where they are the same on every rig.
+/// What the bounds are proportional to; empty where they are the same on every rig.
 std::string scaling_text(BoundScaling scaling) {
   using enum BoundScaling;
   constexpr std::pair<BoundScaling, const char*> kTexts[] = {
@@ -101,48 +101,37 @@ ReportSection parameters_section(const EffectInfo& effect) {
 constexpr std::size_t kRows = 13, kMargin = 11;
 
 /// An axis of the picture.
-struct PlotRange {
-  double low = 0, high = 0;
-  /// Cell 0 .. count-1.
-  std::size_t cell(double x, std::size_t count) const {
-    return static_cast<std::size_t>(std::lround((x - low) / (high - low) * static_cast<double>(count - 1)));
-  }
-  /// Ends to three digits, of one that hardly moves to as many as distinguish them.
-  std::string end(double value) const {
-    const double size = std::max(std::abs(low), std::abs(high));
-    if (std::abs(value) < 1e-3 * (high - low)) return "0";
-    const int digits = 3 + static_cast<int>(std::max(0.0, std::floor(std::log10(size / (high - low)))));
-    return general(value, std::min(digits, 6));
-  }
-};
+Scale scale_over(const Fingerprint& print, std::vector<double> FingerprintCloud::*values, double si) {
+  Extent extent(false);
+  for (const FingerprintCloud& cloud : print.clouds) extent.add(in_unit(cloud.*values, si));
+  return scale_of({}, extent, 0, 1);
+}
 
-PlotRange range_of(const Fingerprint& print, std::vector<double> FingerprintCloud::*values, double si) {
-  std::vector<double> all;
-  for (const FingerprintCloud& cloud : print.clouds) {
-    all.insert(all.end(), (cloud.*values).begin(), (cloud.*values).end());
-  }
-  const Extremes ends = all.empty() ? Extremes{} : extremes(all);
-  const PlotRange range{ends.low / si, ends.high / si};
-  if (range.high - range.low > 1e-9 * std::max(1.0, std::abs(range.high))) return range;
-  const double half = std::max(0.01, 0.01 * std::abs(range.low));  // flat, or nothing at all
-  return {range.low - half, range.low + half};
+/// Ends to three digits, of one that hardly moves to as many as distinguish them.
+std::string end_text(const Scale& axis, double value) {
+  const double size = std::max(std::abs(axis.low), std::abs(axis.high)), width = axis.high - axis.low;
+  if (std::abs(value) < 1e-3 * width) return "0";
+  return general(value, std::min(6, 3 + static_cast<int>(std::max(0.0, std::floor(std::log10(size / width))))));
 }
 
 }  // namespace
 
 std::string render_fingerprint(const Fingerprint& print, const TerminalOptions& options) {
   const std::size_t columns = std::clamp<std::size_t>(options.width, 40, 80) - kMargin - 1;
-  const PlotRange x = range_of(print, &FingerprintCloud::x, print.x.si);
-  const PlotRange y = range_of(print, &FingerprintCloud::y, print.y.si);
+  const Scale x = scale_over(print, &FingerprintCloud::x, print.x.si);
+  const Scale y = scale_over(print, &FingerprintCloud::y, print.y.si);
+  const auto cell = [](const Scale& axis, double value, std::size_t count) {
+    return static_cast<std::size_t>(std::lround(axis.part(value) * static_cast<double>(count - 1)));
+  };
   const auto sign = [&](const char* full, const char* plain) { return options.unicode ? full : plain; };
   const auto mark_of = [&](std::size_t cloud) { return cloud == 0 ? sign("\u2022", "*") : sign("\u25e6", "o"); };
-  const auto row_of = [&](double value) { return kRows - 1 - y.cell(value, kRows); };
+  const auto row_of = [&](double value) { return kRows - 1 - cell(y, value, kRows); };
   std::vector<std::vector<std::string>> cells(kRows, std::vector<std::string>(columns, " "));
   if (y.low < 0 && y.high > 0) cells[row_of(0)].assign(columns, sign("\u2508", "."));
   for (std::size_t k = print.clouds.size(); k-- > 0;) {  // the first lies on top
     const FingerprintCloud& cloud = print.clouds[k];
     for (std::size_t i = 0; i < cloud.x.size(); ++i) {
-      cells[row_of(cloud.y[i] / print.y.si)][x.cell(cloud.x[i] / print.x.si, columns)] = mark_of(k);
+      cells[row_of(cloud.y[i] / print.y.si)][cell(x, cloud.x[i] / print.x.si, columns)] = mark_of(k);
     }
   }
   std::string text = "  " + with_unit(print.y.label, print.y.unit);
@@ -150,13 +139,14 @@ std::string render_fingerprint(const Fingerprint& print, const TerminalOptions& 
     if (!print.clouds[k].name.empty()) text += fmt::format("   {} {}", mark_of(k), print.clouds[k].name);
   }
   for (std::size_t row = 0; row < kRows; ++row) {
-    const std::string end = row == 0 ? y.end(y.high) : row + 1 == kRows ? y.end(y.low) : "";
+    const std::string end = row == 0 ? end_text(y, y.high) : row + 1 == kRows ? end_text(y, y.low) : "";
     while (!cells[row].empty() && cells[row].back() == " ") cells[row].pop_back();
     text += fmt::format("\n{:>{}} {}{}", end, kMargin - 2, sign("\u2502", "|"), fmt::join(cells[row], ""));
   }
   text += fmt::format("\n{:{}}{}", "", kMargin - 1, sign("\u2514", "+"));
   for (std::size_t i = 0; i < columns; ++i) text += sign("\u2500", "-");
-  const std::string left = x.end(x.low), label = with_unit(print.x.label, print.x.unit), right = x.end(x.high);
+  const std::string left = end_text(x, x.low), right = end_text(x, x.high);
+  const std::string label = with_unit(print.x.label, print.x.unit);
   const std::size_t used = left.size() + label.size() + right.size(), gap = columns > used ? columns - used : 2;
   return text +
          fmt::format("\n{:{}}{}{:{}}{}{:{}}{}\n", "", kMargin, left, "", gap / 2, label, "", gap - gap / 2, right);

@@ -22,9 +22,16 @@ CsvLine first_cells(const First& first, const Json& conditions, int digits = kMe
   return line;
 }
 
-class FigureFiles {
- public:
-  FigureFiles(const std::string& folder, std::span<const RunResult> runs) : files_(folder), conditions_(runs) {}
+/// The files of one folder; a row begins with the run, or the number of runs, and its conditions.
+struct FigureFiles {
+  WholeFolder folder;
+  ConditionCells conditions;
+
+  WholeFile& file(const char* name, const char* first, const std::string& columns) {
+    WholeFile& made = folder.add(name);
+    made.write(std::string(first) + "," + conditions.header() + "," + columns + "\n");
+    return made;
+  }
 
   void write_groups(std::span<const RunResult> runs, std::span<const PooledGroup> groups) {
     WholeFile& rms = file("05-rms-velocity.csv", "runs", "rms_velocity_mm_s,rms_velocity_std_error_mm_s");
@@ -32,7 +39,7 @@ class FigureFiles {
                              "law,protocol,unit,mu_s,mu_s_std_error,mu_k,mu_k_std_error,mu_s_minus_mu_k,"
                              "mu_s_minus_mu_k_std_error");
     for (const PooledGroup& group : groups) {
-      const CsvLine first = first_cells(group.runs.size(), conditions_.of(group.conditions, group.others));
+      const CsvLine first = first_cells(group.runs.size(), conditions.of(group.conditions, group.others));
       const PooledValue* v = pooled_value(group.measures, "rms_velocity");
       if (v != nullptr) add_row(rms, first, v->mean, v->standard_error_of_mean);
       for (const PooledGroup::OfFit& fit : group.fits) {
@@ -61,8 +68,8 @@ class FigureFiles {
       const auto kept = results.figures(r.position);
       if (!kept) continue;
       const RunFigures& f = *kept;
-      const Json conditions = conditions_.of(r.run.conditions, r.run.others);
-      const CsvLine whole = first_cells(r.run.name, conditions, 0), first = first_cells(r.run.name, conditions);
+      const Json cells = conditions.of(r.run.conditions, r.run.others);
+      const CsvLine whole = first_cells(r.run.name, cells, 0), first = first_cells(r.run.name, cells);
       for (std::size_t k = 0; k < f.time.size(); ++k) {
         add_row(cycles, whole, f.time[k], f.velocity[k], f.friction[k], r.friction_unit);
       }
@@ -83,29 +90,17 @@ class FigureFiles {
       }
     }
   }
-
-  void commit() { files_.commit(); }
-
- private:
-  WholeFile& file(const char* name, const char* first, const std::string& columns) {
-    WholeFile& made = files_.add(name);
-    made.write(std::string(first) + "," + conditions_.header() + "," + columns + "\n");
-    return made;
-  }
-
-  WholeFolder files_;
-  ConditionCells conditions_;
 };
 
 }  // namespace
 
 void write_figures(const ResultReader& results, std::span<const RunResult> runs, std::span<const PooledGroup> groups) {
   const std::string folder = (std::filesystem::path(results.folder()) / "figures").string();
-  FigureFiles files(folder, runs);
+  FigureFiles files{WholeFolder(folder), ConditionCells(runs)};
   remove_abandoned_files(folder);
   files.write_groups(runs, groups);
   files.write_runs(results, runs);
-  files.commit();
+  files.folder.commit();
 }
 
 }  // namespace tribofit

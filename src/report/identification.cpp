@@ -79,7 +79,9 @@ std::string verdict(const Identification& r) {
 
 /// What to do next with a trace and its fits.
 Suggestion next_command(const Identification& r, const ReportOptions& options) {
-  const auto with = [&](const std::vector<std::string>& more) { return command_line(options, more, r.path); };
+  const auto with = [&](const std::vector<std::string>& more) {
+    return command_line(joined(options.arguments, more), {r.path});
+  };
   const bool steps = r.rate_state && r.rate_state->fitted(), usable = r.analysed && !is_unusable(r);
   const bool trimmed = r.motion.trimmed > 0 && !has_option(options.arguments, "--no-trim");
   const bool has_csv = options.csv_written;
@@ -158,7 +160,7 @@ Report report_of(const Identification& result, const ReportOptions& options) {
   }
   report.add({record_section(result), driven ? ReportSection{} : motion_section(result), sections.trace, sections.law,
               sections.errors, sections.cycles, result_section(report),
-              run_section(report, command_line(options, {}, result.path), {&result, 1})});
+              run_section(report, command_line(options.arguments, {result.path}), {&result, 1})});
   return report;
 }
 

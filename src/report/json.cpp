@@ -16,20 +16,13 @@
 
 namespace tribofit {
 
-constexpr auto description(const Share*) {
-  return described("variable", &Share::variable, "share", &Share::share, "p_value", &Share::p_value);
-}
+TRIBOFIT_DESCRIBED(Share, variable, share, p_value);
+TRIBOFIT_DESCRIBED(Confirmation, path, base_rmse, final_rmse, p_value, floor_rmse);
 
 constexpr auto description(const Rung*) {
   using R = Rung;
   return described("added", or_null(&R::added), "held_out_rmse", &R::held_out_rmse, "rmse", &R::rmse, "equivalent",
                    &R::equivalent, "held_out_std_error", &R::held_out_std_error);
-}
-
-constexpr auto description(const Confirmation*) {
-  using C = Confirmation;
-  return described("path", &C::path, "base_rmse", &C::base_rmse, "final_rmse", &C::final_rmse, "p_value", &C::p_value,
-                   "floor_rmse", &C::floor_rmse);
 }
 
 constexpr auto description(const SlipSpread*) {
@@ -54,9 +47,7 @@ constexpr auto description(const FrictionLevels::Level*) {
                    in(kMillimetre, &L::fastest_peak), "friction", &L::friction, "slips", &L::slips);
 }
 
-constexpr auto description(const FrictionLevels*) {
-  return described("bins", &FrictionLevels::bins, "levels", &FrictionLevels::levels);
-}
+TRIBOFIT_DESCRIBED(FrictionLevels, bins, levels);
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "diagnosis/conclusions.hpp"
-#include "diagnosis_sentences.hpp"
+#include "diagnosis_parts.hpp"
 #include "json_parts.hpp"
 #include "numbers.hpp"
 #include "report/charts/styles.hpp"
@@ -75,7 +75,7 @@ std::string catalogue_experiment(const RunPlan& plan) {
   return {};
 }
 
-/// "8 rpm for 20 s", "9 mm at 8 rpm for 12 s, then 18 mm at 4 rpm for 24 s": what is different from `own`.
+/// "9 mm at 8 rpm for 12 s, then 18 mm at 4 rpm for 24 s": what is different from `own`.
 std::string experiment_text(const Experiment& experiment, const RunConditions& own) {
   if (experiment.tap > 0) return "tap the block";
   if (experiment.lift) return "lift the block off the disc and read the force sensor";
@@ -191,8 +191,7 @@ std::vector<std::string> plan_notes(const RunPlan& plan) {
 
 /// What to type once the first experiment was made.
 Suggestion next_after_plan(const DiagnosedTraces& diagnosed, const RunPlan& plan, const ReportOptions& options) {
-  const std::vector<std::string> inputs =
-      options.inputs.empty() ? std::vector<std::string>{diagnosed.traces.front().path} : options.inputs;
+  const std::vector<std::string> inputs = options.inputs_or(diagnosed.traces.front().path);
   const bool open = plan.reason.empty() && plan.kind != QuestionKind::nothing && !plan.experiments.empty();
   const Experiment best = open ? plan.experiments.front().experiment : Experiment{};
   const auto diagnose = [&](const char* verb, std::vector<std::string> words, const char* dropped,

@@ -10,8 +10,6 @@
 namespace tribofit {
 namespace {
 
-constexpr double kMicrometre = 1e-6;
-
 std::string critical_stiffness_text(const RateStateFit& fit) {
   return fit.states > 1 ? "k_c of two states" : "k_c = (b - a)/D_c";
 }
@@ -80,8 +78,8 @@ std::string states_sentence(const RateStateAnalysis& analysis) {
 
 ReportTable steps_table(const RateStateAnalysis& analysis) {
   ReportTable table("Steps");
-  const bool moved = std::any_of(analysis.steps.begin(), analysis.steps.end(),
-                                 [](const VelocityStep& step) { return step.time != step.recorded; });
+  const bool moved =
+      !std::ranges::equal(analysis.steps, analysis.steps, {}, &VelocityStep::time, &VelocityStep::recorded);
   const bool over_time = analysis.detrend == Detrend::time;
   table.numbers({"no.", "time [s]"});
   if (moved) table.numbers({"recorded [s]"});
@@ -322,7 +320,7 @@ Json rate_state_fits_json(const RateStateAnalysis& analysis, const Motion& motio
     out.protocol = "joint";
     add_parameters(fit.parameters, fit.correlations, motion, out);
     const std::size_t n = fit.parameters.size();
-    // In the units in which the parameters are shown: of D and k the search has the covariance of the logarithm.
+    // In the units shown: of D and k the search has the covariance of the logarithm.
     const auto scale = [&](std::size_t k) {
       const FitParameter& p = fit.parameters[k];
       return p.parameter.unit != "1" ? shown(p, p.value) : 1.0;

@@ -138,7 +138,7 @@ void add_friction_levels(const FrictionLevels& levels, const std::string& unit, 
   }
 }
 
-/// Of a slider on a spring: it sticks, it swings about its drive, or it follows it.
+/// Of a slider on a spring: it sticks, swings about its drive, or follows it.
 std::string regime_text(const Identification& r) {
   if (r.segmentation.kind == MotionKind::stick_slip) return "stick-slip";
   if (follows_drive(r.motion, r.segmentation)) return "steady: the slider follows its drive";

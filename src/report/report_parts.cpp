@@ -25,8 +25,7 @@ void ReportSection::add(ReportItem item, Medium where) {
   if (const auto* table = std::get_if<ReportTable>(&item); table != nullptr && table->rows.empty()) return;
   if (auto* chart = std::get_if<Chart>(&item)) {
     std::erase_if(chart->lines, [](const ChartLine& line) { return line.x.empty(); });
-    std::erase_if(chart->bars, [](const ChartBars& bars) { return bars.values.empty(); });
-    if (chart->lines.empty() && chart->bars.empty() && !chart->map) return;
+    if (chart->lines.empty() && !chart->map) return;
   }
   items.push_back(std::move(item));
 }
@@ -67,13 +66,9 @@ std::vector<const Fit*> drawn_models(std::span<const Fit> fits, std::size_t best
                                      const std::function<bool(const Fit&)>& wanted) {
   std::vector<const Fit*> models;
   for (const Fit& fit : fits) {
-    if (fit.parameters.empty()) continue;
-    if (&fit == &fits[best]) {
-      models.insert(models.begin(), &fit);
-    } else if (wanted(fit)) {
-      models.push_back(&fit);
-    }
+    if (!fit.parameters.empty() && (&fit == &fits[best] || wanted(fit))) models.push_back(&fit);
   }
+  std::ranges::stable_partition(models, [&](const Fit* fit) { return fit == &fits[best]; });
   models.resize(std::min(models.size(), most));
   return models;
 }
@@ -122,8 +117,8 @@ void TraceSections::add_cycles(const DrawnTrace& drawn) {
   cycles.add(measure_charts(drawn));
 }
 
-ReportSection result_section(const Report& report, const std::string& title) {
-  ReportSection section{"result", title, {}, Medium::terminal};
+ReportSection result_section(const Report& report) {
+  ReportSection section{"result", "Result", {}, Medium::terminal};
   for (const std::string& warning : report.warnings) section.warning(warning);
   section.plain(report.lead);
   return section;
@@ -151,12 +146,6 @@ ReportSection run_section(const Report& report, const std::string& command, std:
   }
   section.soft(fmt::format("Made by tribofit {}. Charts by plotly.js (MIT licence).{}", version, more));
   return section;
-}
-
-ReportSection run_section(const Report& report, const std::string& verb, const ReportOptions& options,
-                          const Identification& trace) {
-  const std::string path = options.inputs.empty() ? trace.path : options.inputs.front();
-  return run_section(report, command_line(words_of({verb}, options.arguments), {path}), {&trace, 1});
 }
 
 }  // namespace tribofit

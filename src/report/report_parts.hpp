@@ -78,16 +78,12 @@ struct TraceSections {
 };
 
 /// How a text ends, but for what to do next: warnings and the lead of the report.
-ReportSection result_section(const Report& report, const std::string& title = "Result");
+ReportSection result_section(const Report& report);
 
 /// How a page ends. What was run: the command, the inputs with their checksums and how they were read, what to do next,
 /// and what made the report; `more` is said behind that.
 ReportSection run_section(const Report& report, const std::string& command, std::span<const Identification> traces = {},
                           const std::string& more = "");
-
-/// The same of a command that takes a trace: `verb` with the user's own options.
-ReportSection run_section(const Report& report, const std::string& verb, const ReportOptions& options,
-                          const Identification& trace);
 
 /// A quantity of the rig, in the unit people read.
 struct ShownRigValue {

@@ -120,9 +120,6 @@ Report report_of(const RigIdentification& result, const ReportOptions& options) 
   Report report = titled_report("rig", file_name(trace.path), "Mass, damping and stiffness,", verdict_on(rig));
   report.warnings = trace.warnings;
   report.next = {next_of(result, options)};
-  for (const ShownRigValue& q : shown_rig(rig)) {
-    if (q.value.determined) report.facts.emplace_back(q.name, q.text());
-  }
   add_facts(trace, report);
   ReportSection values{"rig", "Rig", {}};
   values.add(rig_table(rig));
@@ -131,8 +128,9 @@ Report report_of(const RigIdentification& result, const ReportOptions& options) 
   if (options.charts) sections.add_trace(DrawnTrace(trace, {}, {}, "t1"));
   sections.trace.title = "The record";
   sections.trace.add(health_table({&trace, 1}), Medium::page);
+  const std::string command = command_line(words_of({"rig"}, options.arguments), options.inputs_or(trace.path));
   report.add({record_section(trace), std::move(values), std::move(sections.trace), std::move(sections.cycles),
-              result_section(report), run_section(report, "rig", options, trace)});
+              result_section(report), run_section(report, command, {&trace, 1})});
   return report;
 }
 

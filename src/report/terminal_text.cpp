@@ -31,8 +31,8 @@ ColumnIndices columns_of(const ReportTable& table, int detail) {
   return columns;
 }
 
-/// Lines of a table that is too wide, in blocks of as many columns as fit; each block begins with the columns of text
-/// before the first number, which say what a row is of.
+/// A table that is too wide, in blocks of as many columns as fit; each begins with the columns of text before the first
+/// number, which say what a row is of.
 std::vector<Lines> in_blocks(const ReportTable& table, std::size_t width) {
   ColumnIndices heads, others;
   for (const std::size_t k : columns_of(table, 0)) {

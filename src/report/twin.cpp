@@ -95,8 +95,7 @@ std::string twin_verdict(const TwinIdentification& result) {
                     over_floor(result.trace.fits.back()));
 }
 
-/// Said first: the twin of a law that leaves clearly more than noise does not represent the machine. Empty where it
-/// does.
+/// Said first where the law leaves clearly more than noise: its twin does not represent the machine.
 std::string warning_of(const TwinIdentification& result, const std::vector<std::string>& arguments) {
   if (!result.twin.reason.empty() || !result.law_falls_short()) return "";
   const Fit& fit = result.trace.fits.back();
@@ -122,12 +121,6 @@ Json twin_json(const TwinIdentification& result, const JsonOptions& options) {
                 next_after_twin(result, options.arguments).command);
 }
 
-Stroke stroke_for(std::size_t k) {
-  constexpr Colour kThree[] = {Colour::black, Colour::red, Colour::blue};
-  constexpr Dash kThreeDashes[] = {Dash::solid, Dash::dashed, Dash::dotted};
-  return {.colour = kThree[k % 3], .dash = kThreeDashes[k % 3], .width = k == 0 ? 1.8 : 1.4};
-}
-
 /// Differences in standard errors; within the marks they may be chance.
 Chart differences_chart(const Twin& twin) {
   Chart chart{.id = "twin-differences",
@@ -135,18 +128,16 @@ Chart differences_chart(const Twin& twin) {
               .note = fmt::format("Beyond {:g} standard errors a difference is not chance.", kTwinIsOff),
               .x = {.quantity = "difference", .unit = "standard errors"},
               .height = 130 + 26 * static_cast<int>(twin.measures.size())};
-  ChartAxis& names = chart.panels[0];
-  names.falling = true;
-  for (const TwinMeasure& m : twin.measures) names.names.push_back(m.name);
+  const std::size_t count = twin.measures.size();  // the first stands on top
+  for (std::size_t k = count; k-- > 0;) chart.panels[0].names.push_back(twin.measures[k].name);
   double largest = 4;
   for (std::size_t c = 0; c < twin.columns.size(); ++c) {
     ChartLine& line = chart.line(twin.short_name(c), marked(c + 1, false));
-    line.stroke.colour = stroke_for(c + 1).colour;
     line.stroke.size = 8;
-    for (std::size_t k = 0; k < twin.measures.size(); ++k) {
+    for (std::size_t k = 0; k < count; ++k) {
       const double d = twin.measures[k].simulated.at(c).difference;
       if (!std::isfinite(d)) continue;
-      line.add(d, static_cast<double>(k));
+      line.add(d, static_cast<double>(count - 1 - k));
       largest = std::max(largest, 1.1 * std::abs(d));
     }
   }
@@ -161,35 +152,31 @@ Chart differences_chart(const Twin& twin) {
 /// The measured motion and those of the twins over time, as portraits, and alive.
 ReportSection motion_section(const Twin& twin, const std::string& unit) {
   ReportSection section{"motion", "Measured and simulated motion", {}};
-  std::vector<DrawnMotion> motions;
-  if (twin.measured.size() > 0) motions.push_back(drawn_motion("measured", twin.measured));
-  for (std::size_t c = 0; c < twin.simulated.size(); ++c) {
-    if (twin.simulated[c].size() == 0) continue;
-    motions.push_back(drawn_motion("simulated, " + twin.short_name(c), twin.simulated[c]));
-  }
-  if (motions.empty()) return section;
-  Chart chart{
-      .id = "twin-motion",
-      .title = "Three cycles, measured and simulated",
-      .note =
-          "Both begin at a break-away; the simulated cycles are those of one simulation, with numbers drawn within "
-          "the errors and a scatter of its own. Shaded: stick as measured.",
-      .x = {.quantity = "time since break-away", .unit = "s", .digits = 7},
-      .height = 640};
   const double disc = twin.measured.disc_velocity;
-  Chart portrait = portrait_plane("twin-portrait", "Portraits, measured and simulated", disc);
+  std::vector<DrawnMotion> motions;
   Animation alive{.id = "twin-block",
                   .title = "The block on its disc",
                   .note = "Three cycles each, from break-away to break-away.",
-                  .disc_velocity = disc / kMillimetre,
-                  .blocks = motions};
-  for (std::size_t k = 0; k < motions.size(); ++k) {
-    add_over_time(motions[k], {unit == "N" ? "friction" : "mu", unit}, stroke_for(k), chart);
-    add_loop(motions[k], stroke_for(k), portrait);
+                  .disc_velocity = disc / kMillimetre};
+  const auto add = [&](const std::string& name, const auto& motion) {
+    if (motion.size() == 0) return;
+    alive.blocks.push_back(drawn_motion(name, motion));
+    motions.push_back({alive.blocks.back(), stroke_of(motions.size())});
+  };
+  add("measured", twin.measured);
+  for (std::size_t c = 0; c < twin.simulated.size(); ++c) {
+    add("simulated, " + twin.short_name(c), twin.simulated[c]);
   }
-  shade_sticks(drawn_motion("measured", twin.measured), chart);
-  if (twin.measured.size() > 0) chart.marks.push_back(disc_mark(disc));
-  for (Chart* one : {&chart, &portrait}) section.add(std::move(*one));
+  if (motions.empty()) return section;
+  Chart chart = motion_chart("twin-motion", "Three cycles, measured and simulated", disc,
+                             {unit == "N" ? "friction" : "mu", unit}, motions);
+  chart.note =
+      "Both begin at a break-away; the simulated cycles are those of one simulation, with numbers drawn within the "
+      "errors and a scatter of its own. Shaded: stick as measured.";
+  chart.x.quantity = "time since break-away";
+  chart.height = 640;
+  section.add(std::move(chart));
+  section.add(portrait_chart("twin-portrait", "Portraits, measured and simulated", disc, motions));
   section.add(std::move(alive));
   return section;
 }
@@ -222,12 +209,6 @@ Report report_of(const TwinIdentification& result, const ReportOptions& options)
   }
   report.next = {next_after_twin(result, options.arguments)};
   add_facts(trace, report);
-  report.facts.emplace_back("simulations of each law", std::to_string(twin.simulations));
-  for (std::size_t c = 0; c < twin.columns.size(); ++c) {
-    const double rms = twin.rms_difference[c];
-    report.facts.emplace_back("off by, " + twin.short_name(c),
-                              std::isfinite(rms) ? fmt::format("{:.1f} standard errors", rms) : "-");
-  }
   report.add({std::move(first), record_section(trace)});
   if (twin.reason.empty() && !twin.columns.empty()) {
     ReportSection measures{"measures", "Measures in standard errors", {}};
@@ -239,9 +220,10 @@ Report report_of(const TwinIdentification& result, const ReportOptions& options)
         twin.simulations));
     report.add({motion_section(twin, friction_unit(trace.motion)), std::move(measures), twin_model(result)});
   }
+  const std::string command = command_line(words_of({"twin"}, options.arguments), options.inputs_or(trace.path));
   report.add({{"health", "Health of the data", {health_table({&trace, 1})}, Medium::page},
               std::move(end),
-              run_section(report, "twin", options, trace)});
+              run_section(report, command, {&trace, 1})});
   return report;
 }
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "report/diagnosis_sentences.hpp"
+#include "report/diagnosis_parts.hpp"
 #include "tribofit/execution/stop.hpp"
 #include "tribofit/friction/effects/all.hpp"
 #include "tribofit/study/plan.hpp"

@@ -294,7 +294,7 @@ std::vector<WorkbenchRung> WorkbenchSession::rungs() const {
 }
 
 std::string WorkbenchSession::command_of(const WorkbenchChoice& choice) const {
-  return command_line(state_->terminal({}, choice), {}, state_->options.input.path);
+  return command_line(state_->terminal({}, choice).arguments, {state_->options.input.path});
 }
 
 bool WorkbenchSession::begin_diagnosis(const WorkbenchChoice& choice) {
@@ -313,7 +313,7 @@ bool WorkbenchSession::begin_diagnosis(const WorkbenchChoice& choice) {
   ReportOptions terminal = s.terminal({"diagnose"}, part);
   const auto law = std::find(terminal.arguments.begin(), terminal.arguments.end(), "--law");
   terminal.arguments.erase(law, law + 2);  // both climb
-  const std::string command = command_line(terminal, {}, s.options.input.path);
+  const std::string command = command_line(terminal.arguments, {s.options.input.path});
   terminal.arguments.erase(terminal.arguments.begin());  // a plan says its own verb
   terminal.inputs = {s.options.input.path};
   return s.diagnosis.begin({s.options.input, identify, part, terminal}, command);

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "report/campaign_report.hpp"
+#include "report/campaign_parts.hpp"
 #include "tribofit/report/terminal.hpp"
 
 namespace {

@@ -81,7 +81,7 @@ TEST_F(Page, LeavesOutWhatIsForATerminal) {
   ASSERT_EQ(sections.size(), 1u);
   ASSERT_EQ(sections[0]["items"].size(), 2u);
   EXPECT_EQ(sections[0]["items"][0]["text"], "for all");
-  EXPECT_EQ(sections[0]["items"][1]["pairs"], json::parse(R"([["radius", "15 mm"]])"));
+  EXPECT_EQ(sections[0]["items"][1]["facts"], json::parse(R"([["radius", "15 mm"]])"));
 }
 
 TEST_F(Page, AChartIsAsItWasDescribed) {

@@ -75,10 +75,7 @@ TEST(Scale, ShowsWhatIsSaidAndElseTheData) {
   EXPECT_EQ(scale_of({.quantity = "v_{r}", .unit = "mm/s"}, extent(0, 1), 0, 5).title, "v_{r} [mm/s]");
 }
 
-TEST(Scale, GoesTheWayItIsSaid) {
-  const Scale falling = scale_of({.falling = true}, extent(0, 10), 0, 5);
-  EXPECT_DOUBLE_EQ(falling.part(0), 1);
-  EXPECT_DOUBLE_EQ(falling.part(2.5), 0.75);
+TEST(Scale, HasNoPlaceForZeroOnDecades) {
   const Scale decades = scale_of({.logarithmic = true}, extent(1, 100, true), 0, 5);
   EXPECT_DOUBLE_EQ(decades.part(10), 0.5);
   EXPECT_TRUE(std::isnan(decades.part(0)));

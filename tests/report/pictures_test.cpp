@@ -110,9 +110,9 @@ TEST_F(Pictures, AStraightLineEndsAtItsTics) {
   EXPECT_LT(points[1][1], points[0][1]);
 }
 
-TEST_F(Pictures, FallingAndLogarithmicAxesHoldTheirValues) {
+TEST_F(Pictures, LogarithmicAxesHoldTheirValues) {
   Chart chart = straight_chart();
-  chart.x = {"period", "s", 1, 1000, false, true, true};
+  chart.x = {"period", "s", 1, 1000, false, true};
   chart.lines = {{"decades", {1, 1000}, {0, 5}, {Colour::blue}},
                  {"middle", {10}, {2}, {Colour::red, {}, Symbol::circle}}};
   const std::string svg = svg_of(chart);
@@ -120,8 +120,8 @@ TEST_F(Pictures, FallingAndLogarithmicAxesHoldTheirValues) {
   ASSERT_EQ(points.size(), 2u);
   EXPECT_NEAR(points[0][0], word(svg, "1").x, 0.02);
   EXPECT_NEAR(points[1][0], word(svg, "1000").x, 0.02);
-  EXPECT_GT(points[0][0], points[1][0]);
-  EXPECT_NEAR(word(svg, "10").x, points[1][0] + (points[0][0] - points[1][0]) * 2 / 3, 0.02);
+  EXPECT_LT(points[0][0], points[1][0]);
+  EXPECT_NEAR(word(svg, "10").x, points[0][0] + (points[1][0] - points[0][0]) / 3, 0.02);
 }
 
 TEST_F(Pictures, AGapInALineStaysOne) {
@@ -156,8 +156,7 @@ TEST_F(Pictures, NamesAreShownAsTheyAre) {
   Chart chart = straight_chart();
   chart.lines[0].name = kAwkward;
   chart.panels[0].quantity = "50% `d` $H \\a it's a_b {";
-  chart.marks = {{3, true, Dash::dotted, "it's `here` {"}};
-  chart.labels = {{5, 2, "a \\ 100%"}};
+  chart.marks = {{3, true, Dash::dotted, "it's `here` {"}, {2, false, Dash::dotted, "a \\ 100%"}};
   const std::string svg = svg_of(chart);
   EXPECT_THAT(texts_of(svg), AllOf(Contains(kAwkward), Contains("50% `d` $H \\a it's a_b { [mm/s2]"),
                                    Contains("it's `here` {"), Contains("a \\ 100%")));
@@ -216,25 +215,6 @@ TEST_F(Pictures, AMapHasABoxForEachCellAndNoneForNaN) {
   EXPECT_THAT(texts_of(svg), AllOf(Contains("amplitude [mm]"), Contains("speed [mm/s]"), Contains("damping [1]")));
 }
 
-TEST_F(Pictures, BarsEndAtTheirValues) {
-  Chart chart;
-  chart.id = "bars";
-  chart.x = {"share", "%", 0, 100};
-  chart.panels[0].names = {"time", "angle"};
-  chart.bars = {{"law", {50, 100}, Colour::blue, false}, {"final model", {20, 0}, Colour::red, true}};
-  const std::string svg = svg_of(chart);
-  EXPECT_THAT(texts_of(svg), AllOf(Contains("time"), Contains("angle"), Contains("law"), Contains("final model")));
-  const std::regex box("<path fill=\"#0072b2\" d=\"M([-0-9.]+),[-0-9.]+L([-0-9.]+),[-0-9.]+L([-0-9.]+),");
-  std::vector<double> right;
-  const std::string drawn = plotted(svg);
-  for (std::sregex_iterator it(drawn.begin(), drawn.end(), box), end; it != end; ++it) {
-    right.push_back(std::max({std::stod((*it)[1]), std::stod((*it)[2]), std::stod((*it)[3])}));
-  }
-  ASSERT_GE(right.size(), 2u);
-  EXPECT_NEAR(std::max(right[0], right[1]), word(svg, "100").x, 0.05);
-  EXPECT_NEAR(std::min(right[0], right[1]), (word(svg, "0").x + word(svg, "100").x) / 2, 0.05);
-}
-
 TEST_F(Pictures, EveryFormatDrawsWhateverAChartHolds) {
   Chart full = straight_chart();
   full.id = "full";
@@ -243,7 +223,6 @@ TEST_F(Pictures, EveryFormatDrawsWhateverAChartHolds) {
   full.lines.push_back({"points", {1, 2, 3}, {1, 2, 1}, {Colour::purple, {}, Symbol::cross, 1, 5, false}});
   full.lines.push_back({"bars", {4, 5}, {1, 2}, {Colour::green, {}, Symbol::diamond}, {0.5, 1}, {2, 3}, true});
   full.marks = {{4, false, Dash::dotted, "limit"}, {2.5, true, Dash::dashed, "f_{1}"}};
-  full.labels = {{5, 3, "here"}};
   Chart empty;
   empty.id = "empty";
   Chart nothing = straight_chart();

@@ -138,7 +138,7 @@ TEST(ReportOfADiagnosis, TheLadderFallsToItsFloor) {
   EXPECT_THAT(ladder.lines[0].y, ElementsAre(0.0088, 0.0032));
   EXPECT_EQ(ladder.marks[0].at, 0.0031);
   // (0.0088^2 - 0.0032^2)/(0.0088^2 - 0.0031^2) is 99.07 %; shares are never rounded up
-  EXPECT_EQ(ladder.labels[0].text, "99.0 % gone");
+  EXPECT_EQ(ladder.marks[1].text, "99.0 % gone");
 }
 
 TEST(ReportOfADiagnosis, ErrorsBeforeAndAfterStandBesideTheSameNames) {
@@ -148,8 +148,8 @@ TEST(ReportOfADiagnosis, ErrorsBeforeAndAfterStandBesideTheSameNames) {
   const auto above = [](double share, double whole) {
     return ::testing::DoubleNear(std::sqrt(share * (whole * whole - 0.0031 * 0.0031)), 1e-12);
   };
-  EXPECT_THAT(where.bars[0].values, ElementsAre(above(0.02, 0.0088), above(0.07, 0.0088), above(0.82, 0.0088), 0.0088));
-  EXPECT_THAT(where.bars[1].values, ElementsAre(above(0.03, 0.0032), 0, 0, 0.0032));
+  EXPECT_THAT(where.lines[0].x, ElementsAre(above(0.02, 0.0088), above(0.07, 0.0088), above(0.82, 0.0088), 0.0088));
+  EXPECT_THAT(where.lines[1].x, ElementsAre(above(0.03, 0.0032), 0, 0, 0.0032));
 }
 
 TEST(ReportOfADiagnosis, OfManyTracesEightAreDrawn) {

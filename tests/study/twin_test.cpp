@@ -236,8 +236,10 @@ TEST(Twin, ReportDrawsBothMotions) {
   ASSERT_EQ(differences->lines.size(), 1u);
   EXPECT_EQ(differences->panels[0].names.size(), result.twin.measures.size());
   for (std::size_t k = 0; k < differences->lines[0].x.size(); ++k) {
-    const auto measure = static_cast<std::size_t>(differences->lines[0].y[k]);
-    EXPECT_DOUBLE_EQ(differences->lines[0].x[k], result.twin.measures[measure].simulated[0].difference);
+    const auto row = static_cast<std::size_t>(differences->lines[0].y[k]);
+    const TwinMeasure& measure = result.twin.measures.at(result.twin.measures.size() - 1 - row);  // the first on top
+    EXPECT_EQ(differences->panels[0].names.at(row), measure.name);
+    EXPECT_DOUBLE_EQ(differences->lines[0].x[k], measure.simulated[0].difference);
   }
 }
 

@@ -33,7 +33,7 @@ enum class Quantity {
 };
 
 /// SI values of the units people read and write.
-inline constexpr double kMillimetre = 1e-3, kMillisecond = 1e-3;
+inline constexpr double kMillimetre = 1e-3, kMicrometre = 1e-6, kMillisecond = 1e-3;
 inline constexpr double kRpm = 2 * std::numbers::pi / 60;
 
 /// A unit: SI value = factor * number + offset.

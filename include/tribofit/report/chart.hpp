@@ -39,9 +39,7 @@ struct ChartAxis {
   double low = kFromData, high = kFromData;  ///< shown range
   bool from_zero = false;
   bool logarithmic = false;
-  bool falling = false;                 ///< from high to low
   std::vector<std::string> names = {};  ///< of the values 0, 1, 2 ... where the axis counts things
-  int digits = 5;                       ///< of the numbers over this axis; times need more
   double part = 1;                      ///< height of a panel beside that of the others
 };
 
@@ -67,14 +65,6 @@ struct ChartLine {
   }
 };
 
-/// Bars that lie beside the names of the vertical axis (ChartAxis::names of the only panel), one a name.
-struct ChartBars {
-  std::string name = {};
-  std::vector<double> values = {};
-  Colour colour = Colour::blue;
-  bool hatched = false;
-};
-
 /// A stretch of the abscissa that is shaded over all panels.
 enum class Shade { stick, slip, beyond, left_out, range };
 struct Stretch {
@@ -87,13 +77,6 @@ struct ChartMark {
   double at = 0;
   bool upright = false;
   Dash dash = Dash::dashed;
-  std::string text = {};
-  std::size_t panel = 0;
-};
-
-/// A word at a point of a panel.
-struct ChartLabel {
-  double x = 0, y = 0;
   std::string text = {};
   std::size_t panel = 0;
 };
@@ -116,11 +99,9 @@ struct Chart {
   ChartAxis x = {};
   std::vector<ChartAxis> panels = std::vector<ChartAxis>(1);  ///< ordinates, from top to bottom
   std::vector<ChartLine> lines = {};
-  std::vector<ChartBars> bars = {};
   std::optional<HeatMap> map = {};  ///< under the lines
   std::vector<Stretch> stretches = {};
   std::vector<ChartMark> marks = {};
-  std::vector<ChartLabel> labels = {};
   int height = 340;   ///< on the page [CSS pixels]
   bool half = false;  ///< stands beside its neighbour where the page is wide
 

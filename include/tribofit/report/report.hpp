@@ -163,6 +163,11 @@ struct ReportOptions {
   int threads = 1;                          ///< that draw a trace side by side; 0: as many as there are
   bool charts = true;                       ///< and animations, which cost more than all else
   std::vector<std::string> shared_arguments = {};  ///< of a study: the options that those of other kinds have, too
+
+  /// The inputs, or the path of a result where the user named none.
+  std::vector<std::string> inputs_or(const std::string& path) const {
+    return inputs.empty() ? std::vector{path} : inputs;
+  }
 };
 
 /// A trace: three cycles of friction and velocity beside the laws, friction over v_r with both branches, parameters,

@@ -32,7 +32,7 @@ std::string map_json(const StudiedMachine& studied, const MapRequest& request, c
 /// speed, up and down, with the critical speeds and their 95 % ranges, and the growth rate. Phase: portraits, the
 /// motion over time and the block in motion, beside the record where the machine comes from one; of many speeds eight
 /// are drawn, all are listed. Response: A(omega) and the spectra. Sensitivity: each measure over each number of the
-/// machine, and the elasticities as bars. Map: each measure in colours; of many cells the largest of each block is
+/// machine, and the elasticities by size. Map: each measure in colours; of many cells the largest of each block is
 /// drawn; a terminal shows one measure.
 Report report_of(const StudiedMachine& studied, const SpeedStudy& study, const ReportOptions& options = {});
 Report report_of(const StudiedMachine& studied, const std::vector<Portrait>& study, const ReportOptions& options = {});

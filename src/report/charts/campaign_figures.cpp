@@ -1,11 +1,10 @@
-#include "campaign_figures.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
+#include "report/campaign_parts.hpp"
 #include "report/charts/styles.hpp"
 #include "report/numbers.hpp"
 #include "statistics/thinning.hpp"
@@ -114,7 +113,7 @@ Chart levels_chart(const DrawnCampaign& campaign, const OverConditions& over) {
   return chart.chart(560);
 }
 
-/// What the laws have besides mu_s and mu_k (alpha and beta, the rest of Table 4 of [D]): a panel each, both protocols.
+/// What laws have besides mu_s and mu_k (the rest of Table 4 of [D]): a panel each, both protocols.
 Chart other_parameters_chart(const DrawnCampaign& campaign, const OverConditions& over) {
   MeansChart chart(campaign, over, "table4-decay", "Other parameters of the laws");
   std::vector<std::string> names;
@@ -161,7 +160,7 @@ Chart panels_of_groups(const DrawnCampaign& campaign, const char* id, const char
 
 Chart cycles_chart(const DrawnCampaign& campaign, const char* id, const char* title, const ChartAxis& y,
                    std::vector<double> RunFigures::*channel) {
-  return panels_of_groups(campaign, id, title, {.quantity = "time", .unit = "s", .from_zero = true, .digits = 7}, y,
+  return panels_of_groups(campaign, id, title, {.quantity = "time", .unit = "s", .from_zero = true}, y,
                           [&](const RunFigures& f, ChartLine& line) {
                             for (const double t : f.time) line.x.push_back(t - f.time.front());
                             line.y = f.*channel;
@@ -274,7 +273,7 @@ Chart scatter_chart(const DrawnCampaign& campaign, const std::string& law) {
       .title = "The parameters of each run, " + law + " law",
       .note =
           "Joint protocol; bars: 95 % of the run's own error. Repeats that lie further apart differ from run to run.",
-      .x = {.quantity = "run", .digits = 7},
+      .x = {.quantity = "run"},
       .panels = {}};
   for (std::size_t p = 0; chart.panels.size() == p; ++p) {  // as many as the law has
     std::string name, unit;

@@ -58,8 +58,7 @@ bool has_loop(const Fit& fit) {
   return !fit.model.effects().empty();
 }
 
-/// Bands over speed: of the measurement, then of what each model leaves, then of what each says along the slips, where
-/// that is a loop.
+/// Bands over speed: of the measurement, of what each model leaves, then of what each says, where that is a loop.
 std::vector<std::vector<BranchBand>> bands_of(const DrawnTrace& d) {
   const std::size_t models = d.models.size();
   std::vector<std::vector<BranchBand>> bands(1 + 2 * models);
@@ -288,7 +287,7 @@ std::vector<Chart> profile_charts(const Fit& fit, const Motion& motion, const st
     if (p.profile.empty()) continue;
     const std::string name = full_name(p);
     Chart chart = half_chart(id + "-profile-" + name, "Profile likelihood of " + name,
-                             {.quantity = name, .unit = shown_unit(p, motion), .digits = 9},
+                             {.quantity = name, .unit = shown_unit(p, motion)},
                              {.quantity = "rise / that of 95 %", .unit = "1", .from_zero = true});
     chart.note =
         "Rise of the squares with this parameter held and all others refitted, in units of the rise at which the 95 % "

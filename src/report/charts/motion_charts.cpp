@@ -6,54 +6,51 @@
 #include "statistics/thinning.hpp"
 
 namespace tribofit {
+namespace {
 
-DrawnMotion drawn_motion(std::string name, std::span<const double> time, std::span<const double> displacement,
-                         std::span<const double> velocity, std::span<const double> friction,
-                         std::span<const std::uint8_t> sticks) {
-  DrawnMotion out{std::move(name), {}, {}, {}, {}, {}};
-  for (const std::size_t i : drawn_samples({displacement, velocity, friction}, sticks, chart_detail.motion)) {
-    out.time.push_back(time[i]);
-    out.displacement.push_back(displacement[i] / kMillimetre);
-    out.velocity.push_back(velocity[i] / kMillimetre);
-    out.friction.push_back(friction[i]);
-    out.sticks.push_back(sticks[i]);
-  }
-  return out;
-}
-
-Chart portrait_plane(std::string id, std::string title, double disc_velocity) {
-  return {.id = std::move(id),
-          .title = std::move(title),
-          .x = {.quantity = "displacement of the block", .unit = "mm"},
-          .panels = {{.quantity = "velocity of the block", .unit = "mm/s"}},
-          .marks = {disc_mark(disc_velocity)},
-          .height = 420};
-}
-
-void add_loop(const DrawnMotion& m, const Stroke& stroke, Chart& chart, bool closed) {
-  ChartLine line{m.name, m.displacement, m.velocity, stroke};
-  if (closed) line.add(line.x.front(), line.y.front());
-  chart.lines.push_back(std::move(line));
-}
-
-void add_over_time(const DrawnMotion& m, const ChartAxis& friction, const Stroke& stroke, Chart& chart) {
-  chart.panels = {{"velocity v_{b}", "mm/s"}, friction, {"displacement", "mm"}};
-  std::size_t panel = 0;
-  for (const auto* values : {&m.velocity, &m.friction, &m.displacement}) {
-    chart.lines.push_back({m.name, m.time, *values, stroke});
-    chart.lines.back().panel = panel++;
+void mark_disc(double velocity, Chart& chart) {
+  if (velocity > 0) {
+    chart.marks.push_back({velocity / kMillimetre, false, Dash::dash_dotted, "speed of the disc"});
   }
 }
 
-void shade_sticks(const DrawnMotion& m, Chart& chart) {
-  for (const FlagRun& run : runs_of(m.sticks)) {
+}  // namespace
+
+Chart portrait_chart(std::string id, std::string title, double disc_velocity, const std::vector<DrawnMotion>& motions) {
+  Chart chart{.id = std::move(id),
+              .title = std::move(title),
+              .x = {.quantity = "displacement of the block", .unit = "mm"},
+              .panels = {{.quantity = "velocity of the block", .unit = "mm/s"}},
+              .height = 420};
+  mark_disc(disc_velocity, chart);
+  for (const auto& [m, stroke, closed] : motions) {
+    ChartLine& line = chart.lines.emplace_back(ChartLine{m.name, m.displacement, m.velocity, stroke});
+    if (closed) line.add(line.x.front(), line.y.front());
+  }
+  return chart;
+}
+
+Chart motion_chart(std::string id, std::string title, double disc_velocity, const ChartAxis& friction,
+                   const std::vector<DrawnMotion>& motions) {
+  Chart chart{.id = std::move(id),
+              .title = std::move(title),
+              .x = {.quantity = "time", .unit = "s"},
+              .panels = {{"velocity v_{b}", "mm/s"}, friction, {"displacement", "mm"}}};
+  mark_disc(disc_velocity, chart);
+  for (const DrawnMotion& one : motions) {
+    const Animation::Block& m = one.motion;
+    for (const auto* values : {&m.velocity, &m.friction, &m.displacement}) {
+      chart.lines.push_back({m.name, m.time, *values, one.stroke});
+      chart.lines.back().panel = (chart.lines.size() - 1) % chart.panels.size();
+    }
+  }
+  const Animation::Block& first = motions.front().motion;
+  for (const FlagRun& run : runs_of(first.sticks)) {
     if (!run.set || chart.stretches.size() >= chart_detail.shown_sticks) continue;
-    chart.stretches.push_back({m.time[run.begin], m.time[std::min(run.end, m.time.size() - 1)], Shade::stick});
+    const std::size_t end = std::min(run.end, first.time.size() - 1);
+    chart.stretches.push_back({first.time[run.begin], first.time[end], Shade::stick});
   }
-}
-
-ChartMark disc_mark(double disc_velocity) {
-  return {disc_velocity / kMillimetre, false, Dash::dash_dotted, "speed of the disc"};
+  return chart;
 }
 
 }  // namespace tribofit

@@ -1,9 +1,6 @@
 #pragma once
 
-#include <cstdint>
-#include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "report/charts/styles.hpp"
@@ -13,27 +10,32 @@ namespace tribofit {
 
 /// Motions of the block, simulated or measured, as portraits, over time and alive.
 
-/// What is drawn of a motion: a few hundred extremes of each channel, three quarters of which lie in the slips, where
-/// things happen fast.
-using DrawnMotion = Animation::Block;
-/// Of channels in SI.
-DrawnMotion drawn_motion(std::string name, std::span<const double> time, std::span<const double> displacement,
-                         std::span<const double> velocity, std::span<const double> friction,
-                         std::span<const std::uint8_t> sticks);
+/// A few hundred extremes of each channel of a motion, three quarters of which lie in the slips, where things happen
+/// fast.
 template <class Motion>
-DrawnMotion drawn_motion(std::string name, const Motion& m) {
-  return drawn_motion(std::move(name), m.time, m.displacement, m.velocity, m.friction, m.sticks);
+Animation::Block drawn_motion(std::string name, const Motion& m) {
+  Animation::Block out{std::move(name), {}, {}, {}, {}, {}};
+  for (const std::size_t i : drawn_samples({m.displacement, m.velocity, m.friction}, m.sticks, chart_detail.motion)) {
+    out.time.push_back(m.time[i]);
+    out.displacement.push_back(m.displacement[i] / kMillimetre);
+    out.velocity.push_back(m.velocity[i] / kMillimetre);
+    out.friction.push_back(m.friction[i]);
+    out.sticks.push_back(m.sticks[i]);
+  }
+  return out;
 }
 
-/// Velocity over displacement, without a line yet; the speed of the disc [m/s] is marked.
-Chart portrait_plane(std::string id, std::string title, double disc_velocity);
-/// Adds a motion to it; closed: it ends where it began.
-void add_loop(const DrawnMotion& motion, const Stroke& stroke, Chart& chart, bool closed = false);
+/// A motion and how it is drawn; closed: it ends where it began.
+struct DrawnMotion {
+  Animation::Block motion;
+  Stroke stroke = {};
+  bool closed = false;
+};
 
-/// Adds a motion to a chart over time: velocity, friction and displacement, a panel each; the legend names it once.
-void add_over_time(const DrawnMotion& motion, const ChartAxis& friction, const Stroke& stroke, Chart& chart);
-void shade_sticks(const DrawnMotion& motion, Chart& chart);
-/// The speed of the disc in the first panel.
-ChartMark disc_mark(double disc_velocity);
+/// Velocity over displacement; the speed of the disc [m/s] is marked where it is one.
+Chart portrait_chart(std::string id, std::string title, double disc_velocity, const std::vector<DrawnMotion>& motions);
+/// Velocity, friction and displacement over time, a panel each, with the sticks of the first motion shaded.
+Chart motion_chart(std::string id, std::string title, double disc_velocity, const ChartAxis& friction,
+                   const std::vector<DrawnMotion>& motions);
 
 }  // namespace tribofit

@@ -10,8 +10,6 @@
 namespace tribofit {
 namespace {
 
-constexpr double kMicrometreOfChart = 1e-6;
-
 std::string law_name(const RateStateFit& fit) {
   return std::string(to_string(fit.evolution)) + " law";
 }
@@ -21,14 +19,14 @@ const std::string& unit_of_friction(const RateStateAnalysis& analysis) {
   return analysis.fits[analysis.best].parameters.front().parameter.unit;
 }
 
-/// What was measured between two displacements from an origin, and what the laws make of it, the best on top.
+/// What was measured between two displacements, and what the laws make of it, the best on top.
 void add_step(const RateStateAnalysis& analysis, const RateStateCurve& curve, double origin, double from, double to,
               Chart& chart) {
   const auto add = [&](const std::string& name, const std::vector<double>& values, const Stroke& stroke) {
     ChartLine& line = chart.line(name, stroke);
     for (std::size_t i = 0; i < curve.time.size(); ++i) {
       const double x = curve.displacement[i] - origin;
-      if (!(x < from || x > to)) line.add(x / kMicrometreOfChart, values[i]);
+      if (!(x < from || x > to)) line.add(x / kMicrometre, values[i]);
     }
   };
   add("measured", curve.friction, kMeasured);
@@ -49,7 +47,7 @@ Chart whole_chart(const RateStateAnalysis& analysis) {
     add_step(analysis, curve, 0, -1e300, 1e300, chart);
     const VelocityStep& step = analysis.steps[curve.step];
     chart.marks.push_back(
-        {step.displacement / kMicrometreOfChart, true, Dash::dotted,
+        {step.displacement / kMicrometre, true, Dash::dotted,
          step.hold > 0 ? fmt::format("{} s", significant(step.hold, 3)) : sliding_speed_text(step.after)});
   }
   return chart;

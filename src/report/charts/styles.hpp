@@ -104,6 +104,18 @@ constexpr const auto& style_of(Enum value, const Styles& styles) {
   return styles[static_cast<std::size_t>(value)];
 }
 
+constexpr std::string_view to_string(Colour colour) {
+  return style_of(colour, kColours).name;
+}
+constexpr std::string_view to_string(Dash dash) {
+  return style_of(dash, kDashes).name;
+}
+constexpr std::string_view to_string(Symbol symbol) {
+  return style_of(symbol, kSymbols).name;
+}
+constexpr std::string_view to_string(Shade shade) {
+  return style_of(shade, kShades).name;
+}
 // How the same thing is drawn in every chart.
 
 /// How much of a record charts show: stretches into which a series is cut (drawn_samples()), bins of what is taken
@@ -117,7 +129,7 @@ struct ChartDetail {
   double harmonics = 12;  ///< multiples of the stick-slip frequency up to which a spectrum is shown
   double decades = 100;   ///< fastest over slowest from which points stand over the logarithm of the speed
   int digits = 5;         ///< of what is drawn: finer than any screen, and a page stays small
-  int time_digits = 9;    ///< of times: 20 us are distinguishable after an hour
+  int time_digits = 9;    ///< over the abscissa: 20 us are distinguishable after an hour
 };
 inline constexpr ChartDetail chart_detail;
 

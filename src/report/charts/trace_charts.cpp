@@ -32,7 +32,7 @@ ChartLine& add_drawn(const DrawnTrace& d, const Window& w, const std::string& na
   return line;
 }
 
-/// Friction with its models above; below v_b with the disc where the block moves against one of known speed, else v_r.
+/// Friction with its models; below v_b with a disc of known speed, else v_r.
 Chart window_chart(const DrawnTrace& d, const Window& w, bool with_models) {
   const Motion& motion = d.trace.motion;
   const bool varies = !motion.disc_velocity.empty();
@@ -51,7 +51,7 @@ Chart window_chart(const DrawnTrace& d, const Window& w, bool with_models) {
     const double v_r = motion.relative_velocity[i];
     return of_block ? disc(i) - v_r : v_r;
   };
-  Chart chart{.x = {.quantity = "time", .unit = "s", .digits = chart_detail.time_digits},
+  Chart chart{.x = {.quantity = "time", .unit = "s"},
               .panels = {friction_axis(motion, 1.3), {of_block ? "v_{b}" : "v_{r}", "mm/s"}}};
   add_drawn(d, w, "measured", in(motion.friction), kMeasured, 0, chart);
   for (std::size_t k = 0; with_models && k < d.models.size(); ++k) {
@@ -95,7 +95,7 @@ Chart zoom_chart(const DrawnTrace& d, double at, double half, const char* id, co
   chart.id = d.id + "-" + id;
   chart.title = title;
   chart.note = fmt::format("±{} ms about {} s.", significant(half / kMillisecond, 2), significant(at, 6));
-  chart.x = {.quantity = "time from the event", .unit = "ms", .digits = chart_detail.time_digits};
+  chart.x = {.quantity = "time from the event", .unit = "ms"};
   chart.marks.push_back({0, true, Dash::dotted, ""});
   chart.height = 400;
   chart.half = true;
@@ -118,7 +118,7 @@ ShownCycles shown_cycles(const DrawnTrace& d) {
   return {first, begin, std::min(d.trace.motion.size(), tail.slip.end + margin)};
 }
 
-/// Amplitudes of v_r up to twelve times the stick-slip frequency, or the whole band where nothing repeats.
+/// Amplitudes of v_r, up to twelve times the stick-slip frequency where there is one.
 Chart spectrum_chart(const DrawnTrace& d) {
   const Motion& motion = d.trace.motion;
   const std::vector<double>& v_r = motion.relative_velocity;
@@ -152,9 +152,7 @@ struct CycleMeasure {
 /// Measures of each cycle as points over time.
 Chart cycle_chart(const DrawnTrace& d, const char* id, const char* title, ChartAxis axis, double unit,
                   std::initializer_list<CycleMeasure> measures) {
-  Chart chart =
-      half_chart(d.id + "-" + id, title,
-                 {.quantity = "time of break-away", .unit = "s", .digits = chart_detail.time_digits}, std::move(axis));
+  Chart chart = half_chart(d.id + "-" + id, title, {.quantity = "time of break-away", .unit = "s"}, std::move(axis));
   chart.height = 290;
   const std::vector<Cycle>& cycles = d.trace.segmentation.cycles;
   for (const CycleMeasure& measure : measures) {

@@ -29,7 +29,8 @@ const along = (axis, value) => (axis.logarithmic ? Math.log10(value) : value);
 const unitOf = (axis) => (axis.unit && axis.unit !== "1" ? ` ${axis.unit}` : "");
 
 function axisOf(axis, more = {}) {
-  const layout = { title: { text: marked(brokenTitle(titleOf(axis))), standoff: 8 }, automargin: true, zeroline: false, showline: true,
+  const layout = { title: { text: marked(brokenTitle(titleOf(axis))), standoff: 8 }, automargin: true,
+    zeroline: false, showline: true,
     linecolor: styles.axis, gridcolor: styles.grid, ticks: "outside", tickcolor: styles.axis, exponentformat: "power",
     hoverformat: ".7~g", ticklabeloverflow: "allow", ...more }; // the margins have room for every label
   if (axis.names.length) {
@@ -41,7 +42,6 @@ function axisOf(axis, more = {}) {
   if (axis.logarithmic) layout.type = "log";
   if (axis.from_zero) layout.rangemode = "tozero";
   if (axis.low !== null && axis.high !== null) layout.range = [axis.low, axis.high].map((end) => along(axis, end));
-  if (axis.falling) layout.range.reverse(); // only axes of names do
   return layout;
 }
 
@@ -49,10 +49,10 @@ const nth = (letter, panel) => (panel ? `${letter}${panel + 1}` : letter);
 
 /** Hover text: both values with their units, and the line. */
 function hoverOf(chart, panel, bars) {
-  const y = chart.panels[panel], quantity = marked(y.quantity);
-  const x = chart.x.names.length ? "%{customdata}" : `${marked(chart.x.quantity)} %{x}${plain(unitOf(chart.x))}`;
-  return { hovertemplate: `${x}<br>${quantity} %{y:.5g}${plain(unitOf(y))}${bars ? "<br>%{text}" : ""}` +
-    "<extra>%{fullData.name}</extra>" };
+  const valueOf = (axis, value) => (axis.names.length ? "%{customdata}"
+    : `${marked(axis.quantity)} ${value}${plain(unitOf(axis))}`);
+  const x = valueOf(chart.x, "%{x}"), y = valueOf(chart.panels[panel], "%{y:.5g}");
+  return { hovertemplate: `${x}<br>${y}${bars ? "<br>%{text}" : ""}<extra>%{fullData.name}</extra>` };
 }
 
 /** A band under its line, switched together with it: one filled shape, which goes along the upper edge and back along the
@@ -71,6 +71,10 @@ function bandOf(line, shape) {
   return { ...shape, name: `${plain(line.name)}, band`, x, y, fill: "toself", fillcolor: styles.pale[line.stroke.colour] };
 }
 
+/** Names beside the points of a line, and its values that count them. */
+const namesOf = (chart, line) => (chart.x.names.length ? { names: chart.x.names, along: line.x }
+  : { names: chart.panels[line.panel].names, along: line.y });
+
 function tracesOfLine(chart, line, listed) {
   const { dash, symbol, width, size, joined } = line.stroke, color = styles.colours[line.stroke.colour];
   const common = { type: "scatter", legendgroup: line.name, x: line.x, yaxis: nth("y", line.panel),
@@ -87,7 +91,8 @@ function tracesOfLine(chart, line, listed) {
     marker: { symbol: marks ? symbol : "circle", size, color,
       ...(joined && !line.bars ? { maxdisplayed: styles.most_symbols } : {}) },
     ...hoverOf(chart, line.panel, line.bars) };
-  if (chart.x.names.length) trace.customdata = line.x.map((x) => plain(chart.x.names[Math.round(x)] || ""));
+  const { names, along } = namesOf(chart, line);
+  if (names.length) trace.customdata = along.map((at) => plain(names[Math.round(at)] || ""));
   if (line.bars) {
     trace.error_y = { type: "data", symmetric: false, array: line.y.map((y, k) => line.high[k] - y),
       arrayminus: line.y.map((y, k) => y - line.low[k]), thickness: 1.3, width: 4, color };
@@ -96,19 +101,11 @@ function tracesOfLine(chart, line, listed) {
   return [...traces, trace];
 }
 
-function tracesOfBars(chart, bars) {
-  const y = chart.panels[0];
-  return { type: "bar", orientation: "h", name: plain(bars.name), legendgroup: bars.name, x: bars.values,
-    y: bars.values.map((_, k) => k), customdata: y.names.map(plain),
-    marker: { color: styles.colours[bars.colour], line: { color: styles.colours.black, width: 1 },
-      pattern: { shape: bars.hatched ? "/" : "", fillmode: "overlay", fgcolor: styles.paper, size: 6, solidity: 0.35 } },
-    hovertemplate: `%{customdata}: %{x:.4g}${plain(unitOf(chart.x))}<extra>%{fullData.name}</extra>` };
-}
-
 function tracesOfMap(chart) {
   const map = chart.map, x = chart.x, y = chart.panels[0];
   const colours = map.diverging ? styles.diverging : styles.heat;
-  const cells = { type: "heatmap", name: plain(map.quantity), x: map.x, y: map.y, z: map.z, zmin: map.low ?? undefined, zmax: map.high ?? undefined,
+  const cells = { type: "heatmap", name: plain(map.quantity), x: map.x, y: map.y, z: map.z,
+    zmin: map.low ?? undefined, zmax: map.high ?? undefined,
     zauto: map.low === null, colorscale: colours.map((colour, k) => [k / (colours.length - 1), colour]), hoverongaps: false,
     opacity: map.contours ? 0.6 : 1, // lines and their numbers must be read on it
     colorbar: { title: { text: marked(titleOf(map)), side: "right" }, thickness: 12, outlinecolor: styles.axis,
@@ -127,7 +124,7 @@ function tracesOf(chart) {
     traces.push(...tracesOfLine(chart, line, !names.has(line.name)));
     names.add(line.name);
   }
-  return [...traces, ...chart.bars.map((bars) => tracesOfBars(chart, bars))];
+  return traces;
 }
 
 function shapesOf(chart) {
@@ -144,15 +141,14 @@ function annotationsOf(chart) {
   const named = chart.marks.filter((mark) => mark.text);
   const all = chart.lines.flatMap((line) => line.x).filter(Number.isFinite).map((x) => along(chart.x, x));
   const low = Math.min(...all), high = Math.max(...all);
-  const common = { showarrow: false, font: { size: 11 }, bgcolor: styles.halo };
-  const yOf = (panel, value) => ({ yref: nth("y", panel), y: along(chart.panels[panel], value) });
   // Of words at upright marks, one below the other; on a narrow screen below those at a level mark of the panel.
   let rows = innerWidth < 500 && named.some((mark) => !mark.upright && !mark.panel) ? 1.4 : 0;
-  const words = named.map((mark) => {
-    const word = { ...common, textangle: 0, xanchor: "left", align: "left" };
+  return named.map((mark) => {
+    const word = { showarrow: false, font: { size: 11 }, bgcolor: styles.halo, textangle: 0, xanchor: "left",
+      align: "left" };
     if (!mark.upright) {
-      return { ...word, text: marked(mark.text), xref: "paper", x: 0, ...yOf(mark.panel, mark.at),
-        yanchor: mark.at < 0 ? "top" : "bottom" };
+      return { ...word, text: marked(mark.text), xref: "paper", x: 0, yref: nth("y", mark.panel),
+        y: along(chart.panels[mark.panel], mark.at), yanchor: mark.at < 0 ? "top" : "bottom" };
     }
     const text = innerWidth < 500 ? mark.text.replace(/, (?![^[]*\])| (?=\[)/g, "\n") : mark.text;
     const x = along(chart.x, mark.at), yshift = -15 * rows;
@@ -160,8 +156,6 @@ function annotationsOf(chart) {
     return { ...word, text: marked(text), xref: "x", x, yref: "paper", y: 1, yanchor: "top", yshift,
       ...(x - low > 0.6 * (high - low) ? { xanchor: "right", align: "right" } : {}) };
   });
-  return [...words, ...chart.labels.map((label) => ({ ...common, x: along(chart.x, label.x), ...yOf(label.panel, label.y),
-    text: marked(label.text), yanchor: "bottom", yshift: 14 }))];
 }
 
 /** Panels one above the other, with room between them. */
@@ -175,7 +169,7 @@ function layoutOf(chart) {
     color: styles.text },
     paper_bgcolor: styles.paper, plot_bgcolor: styles.paper, hovermode: "closest",
     showlegend: false, hoverlabel: { bgcolor: styles.paper, bordercolor: styles.axis, font: { color: styles.text } },
-    height: chart.height, barmode: "group", uirevision: chart.id, shapes: shapesOf(chart), annotations: annotationsOf(chart),
+    height: chart.height, uirevision: chart.id, shapes: shapesOf(chart), annotations: annotationsOf(chart),
     xaxis: axisOf(chart.x, { anchor: nth("y", count - 1) }) };
   let top = 1;
   chart.panels.forEach((panel, k) => {
@@ -198,10 +192,12 @@ function fitBelow(layout, chart, width) {
 /** The numbers of a chart: a row a point. */
 function rowsOf(chart) {
   const title = (axis) => unmarked(titleOf(axis)), y = chart.panels[0], none = [null, null];
-  const x = (value) => (chart.x.names.length ? chart.x.names[Math.round(value)] : value);
-  const rows = chart.lines.flatMap((line) => line.x.map((at, k) =>
-    [line.name, x(at), title(chart.panels[line.panel]), line.y[k] ?? null, line.low[k] ?? null, line.high[k] ?? null]));
-  for (const bars of chart.bars) rows.push(...bars.values.map((value, k) => [bars.name, y.names[k], title(chart.x), value, ...none]));
+  const rows = chart.lines.flatMap((line) => line.x.map((at, k) => {
+    const { names, along } = namesOf(chart, line), name = names[Math.round(along[k])];
+    if (y.names.length) return [line.name, name, title(chart.x), at, ...none];
+    const values = [line.y, line.low, line.high].map((all) => all[k] ?? null);
+    return [line.name, name ?? at, title(chart.panels[line.panel]), ...values];
+  }));
   if (chart.map) {
     chart.map.z.forEach((row, i) => rows.push(...row.map((z, k) =>
       [`${title(y)} = ${chart.map.y[i]}`, chart.map.x[k], title(chart.map), z, ...none])));
@@ -210,17 +206,14 @@ function rowsOf(chart) {
   return rows.filter((row) => row[3] !== null || row[4] !== null);
 }
 
-const headerOf = (chart) => ["line", unmarked(chart.bars.length ? "name" : titleOf(chart.x)), "quantity", "value", "low", "high"];
+const headerOf = (chart) => ["line", unmarked(chart.panels[0].names.length ? "name" : titleOf(chart.x)), "quantity",
+  "value", "low", "high"];
 
 /** What a line looks like, for the legend. */
 function swatch(trace) {
   const svg = svgPart("svg", { width: 34, height: 12, "aria-hidden": "true" });
-  if (trace.type === "bar" || trace.fill) {
-    const fill = trace.fill ? trace.fillcolor : trace.marker.color;
-    svg.append(svgPart("rect", { x: 6, y: 1, width: 22, height: 10, fill, stroke: trace.fill ? "none" : styles.colours.black }));
-    if (!trace.fill && trace.marker.pattern.shape) {
-      svg.append(svgPart("path", { d: "M8,11l8,-10M14,11l8,-10M20,11l8,-10", stroke: styles.paper, "stroke-width": 1.5 }));
-    }
+  if (trace.fill) {
+    svg.append(svgPart("rect", { x: 6, y: 1, width: 22, height: 10, fill: trace.fillcolor }));
     return svg;
   }
   const colour = trace.line.color;

@@ -9,7 +9,7 @@ const itemMakers = {
     if (!item.folded) return whole;
     return make("details", {}, make("summary", {}, item.caption), whole);
   },
-  facts: (item) => make("div", {}, ...item.pairs.map(([name, value]) => itemMakers.text({ kind: "item", text: `${name}: ${value}` }))),
+  facts: (item) => make("div", {}, ...item.facts.map(([name, value]) => itemMakers.text({ kind: "item", text: `${name}: ${value}` }))),
   animation: animationFigure,
 };
 

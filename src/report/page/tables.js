@@ -39,15 +39,6 @@ function prose(text) {
   return words.replace(/^[a-z](?=[a-z'-]*( [^=]|$))/, (letter) => letter.toUpperCase()); // but "mu_s" and "mu = ..."
 }
 
-/** The order of columns: what a reader wants first, the interval, stands behind the value. */
-function columnOrder(header, numeric) {
-  const order = header.map((_, k) => k), interval = header.indexOf("95 % interval"), value = numeric[0];
-  if (interval < 0 || !(interval > value + 1)) return order;
-  order.splice(order.indexOf(interval), 1);
-  order.splice(order.indexOf(value) + 1, 0, interval);
-  return order;
-}
-
 const tableWidths = new ResizeObserver((entries) => {
   for (const { target } of entries) {
     const box = target.closest(".scroll");
@@ -57,13 +48,13 @@ const tableWidths = new ResizeObserver((entries) => {
 
 /** A table; columns named in `numeric` are set to the right. Where it is wider than its place it scrolls, and says so. */
 function table(caption, header, rows, numeric = []) {
-  const order = columnOrder(header, numeric);
   const isLong = (k) => rows.some((row) => String(row[k] ?? "").length > 16);
   const aligned = header.map((_, k) => (numeric.includes(k) ? { className: "number" } : isLong(k) ? { className: "words" } : {}));
   const cell = (tag, content, k, more = {}) => make(tag, { ...aligned[k], ...more }, symbols(String(content)));
   const whole = make("table", {}, caption ? make("caption", {}, symbols(caption)) : null,
-    make("thead", {}, make("tr", {}, ...order.map((k) => (header[k] ? cell("th", header[k], k, { scope: "col" }) : make("td"))))),
-    make("tbody", {}, ...rows.map((row) => make("tr", {}, ...order.map((k) => cell("td", row[k] ?? "", k))))));
+    make("thead", {}, make("tr", {},
+      ...header.map((name, k) => (name ? cell("th", name, k, { scope: "col" }) : make("td"))))),
+    make("tbody", {}, ...rows.map((row) => make("tr", {}, ...header.map((_, k) => cell("td", row[k] ?? "", k))))));
   if (header.length > 8) whole.className = "wide";
   const box = make("div", { className: "scroll", tabindex: "0", role: "group", "aria-label": symbols(caption || "Table") }, whole);
   const outer = make("div", { className: "table" }, box,

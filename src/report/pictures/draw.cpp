@@ -44,8 +44,7 @@ Path points_of(const Panel& panel, const ChartLine& line, const std::vector<doub
   return points;
 }
 
-/// Runs of points that are finite, without those that are not distinguishable on paper (Douglas and Peucker 1973): no
-/// peak is lost.
+/// Runs of finite points, without those that paper does not show (Douglas and Peucker 1973): no peak is lost.
 std::vector<Path> thinned_runs(const Path& points) {
   std::vector<Path> runs;
   for (auto begin = points.begin(), end = begin; begin != points.end(); begin = end) {
@@ -99,13 +98,12 @@ class Drawing {
       const Panel panel{k, layout_.x, layout_.y[k], layout_.panels[k]};
       draw_ground(panel);
       if (k == 0 && chart_.map) draw_map(panel, *chart_.map);
-      if (k == 0 && !chart_.bars.empty()) draw_bars(panel);
       for (const ChartLine& line : chart_.lines) {
         if (panel.has(line)) draw_line(panel, line);
       }
       draw_axes(panel);
       draw_marks(panel);
-      draw_words(panel);
+      if (k == 0) draw_words(panel);
     }
     draw_title_of_abscissa();
     for (const Key& key : layout_.keys) draw_key(key);
@@ -144,36 +142,6 @@ class Drawing {
       }
     }
     sheet_.end_plot();
-  }
-
-  /// Beside the names of the vertical axis.
-  void draw_bars(const Panel& p) {
-    const std::size_t count = chart_.bars.size();
-    const double thickness = sizes.bars_together / static_cast<double>(count);
-    sheet_.begin_plot(p.area);
-    for (std::size_t k = 0; k < count; ++k) {
-      const ChartBars& bars = chart_.bars[k];
-      // The first of a group lies above the others.
-      const double place = static_cast<double>(p.y.falling ? k : count - 1 - k);
-      for (std::size_t i = 0; i < bars.values.size(); ++i) {
-        const double from = static_cast<double>(i) + place * thickness - sizes.bars_together / 2;
-        const Point a = p.at(0, from), b = p.at(bars.values[i], from + thickness);
-        if (!finite(b)) continue;
-        draw_box({std::min(a.x, b.x), std::min(a.y, b.y), std::abs(b.x - a.x), std::abs(b.y - a.y)}, bars);
-      }
-    }
-    sheet_.end_plot();
-  }
-
-  void draw_box(const Area& box, const ChartBars& bars) {
-    sheet_.fill(box, bars.hatched ? Paint{"#ffffff"} : ink(bars.colour));
-    std::vector<Path> hatching;  // of 45 degrees: x - y is the same all along
-    for (double c = box.left - box.height + sizes.hatching / 2; bars.hatched && c < box.right(); c += sizes.hatching) {
-      const double first = std::max(box.left, c), last = std::min(box.right(), c + box.height);
-      if (first < last) hatching.push_back({{first, box.bottom + first - c}, {last, box.bottom + last - c}});
-    }
-    sheet_.stroke(hatching, {ink(bars.colour), 0.9});
-    sheet_.stroke(box.outline(), {});
   }
 
   /// A line with its band, symbols and bars of errors.
@@ -255,8 +223,8 @@ class Drawing {
     sheet_.write({.text = title, .at = at, .anchor = Anchor::centre, .upright = true});
   }
 
-  void write_beside(const std::string& text, const Point& at, Anchor anchor = Anchor::left) {
-    sheet_.write({.text = text, .at = at, .anchor = anchor, .points = sizes.small_text, .halo = true});
+  void write_beside(const std::string& text, const Point& at) {
+    sheet_.write({.text = text, .at = at, .points = sizes.small_text, .halo = true});
   }
 
   /// Points of the lines of a panel within an area.
@@ -294,21 +262,11 @@ class Drawing {
     }
   }
 
-  /// Those at upright marks in the first panel, and labels above their points, within the panel.
+  /// Those at upright marks in the first panel.
   void draw_words(const Panel& p) {
-    const double top = p.area.top();
     for (const UprightWords& words : layout_.upright_words) {
-      if (p.number > 0) break;
-      const double y = top - sizes.mark_line * (static_cast<double>(words.row) + 0.5);
+      const double y = p.area.top() - sizes.mark_line * (static_cast<double>(words.row) + 0.5);
       write_beside(words.mark->text, {p.area.left + words.from, y});
-    }
-    for (const ChartLabel& label : chart_.labels) {
-      const Point at = p.at(label.x, label.y);
-      if (label.panel != p.number || !p.area.holds(at)) continue;
-      const double half = std::min(width_of(label.text, sizes.small_text), p.area.width) / 2;
-      const double middle = std::clamp(at.x, p.area.left + half, p.area.right() - half);
-      const bool below = top - at.y < sizes.above_label + 1.5;
-      write_beside(label.text, {middle, at.y + (below ? -sizes.above_label : sizes.above_label)}, Anchor::centre);
     }
   }
 
@@ -325,7 +283,6 @@ class Drawing {
       sheet_.fill(box, style_of(key.stretch->shade, kShades).paint);
       sheet_.stroke(box.outline(), {{kKeyColour}, 0.5});
     }
-    if (key.bars != nullptr) draw_box(box, *key.bars);
     if (key.band != nullptr) sheet_.fill(box, pale(key.band->stroke.colour));
     if (key.line != nullptr) {
       const Stroke& stroke = key.line->stroke;

@@ -20,10 +20,6 @@ Extent extent_of_abscissa(const Chart& chart) {
       if (is_drawn(line, k)) extent.add(line.x[k]);
     }
   }
-  for (const ChartBars& bars : chart.bars) {
-    extent.add(0);
-    extent.add(bars.values);
-  }
   if (chart.map) extent.add(cell_edges(chart.map->x));
   return extent;
 }
@@ -48,7 +44,6 @@ Extent extent_of_panel(const Chart& chart, std::size_t panel, const Scale& x) {
 
 /// Points at the very edge would be cut in half; a line or a map may reach it.
 double margin_of_abscissa(const Chart& chart) {
-  if (!chart.bars.empty()) return 0.04;
   const auto has_symbols = [](const ChartLine& line) { return line.shown && line.stroke.has_symbols(); };
   return std::ranges::any_of(chart.lines, has_symbols) ? 0.03 : 0;
 }
@@ -62,7 +57,6 @@ std::vector<Key> keys_of(const Chart& chart) {
     if (!line.low.empty() && !line.bars && at->band == nullptr) at->band = &line;
     if (!line.y.empty() && at->line == nullptr) at->line = &line;
   }
-  for (const ChartBars& bars : chart.bars) keys.push_back({.name = bars.name, .bars = &bars});
   if (keys.size() == 1) keys.clear();  // one alone needs no name
   std::set<Shade> shades;
   for (const Stretch& stretch : chart.stretches) {
@@ -188,7 +182,7 @@ ChartAxis with_room_for_words(const ChartAxis& axis, const Scale& scale, const P
   ChartAxis wider = axis;
   std::size_t rows = 0;
   for (const UprightWords& words : layout.upright_words) rows = std::max(rows, words.row + 1);
-  if (rows == 0 || scale.named || scale.falling || std::isfinite(axis.high)) return wider;
+  if (rows == 0 || scale.named || std::isfinite(axis.high)) return wider;
   const double factor = 1 / (1 - std::min(kMostRoom, static_cast<double>(rows) * sizes.mark_line / height));
   const double top = scale.low + factor * (scale.high - scale.low);
   wider.high = scale.logarithmic ? std::pow(10, top) : top;

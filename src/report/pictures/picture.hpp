@@ -25,8 +25,8 @@ inline double along(double value, bool logarithmic) {
 
 /// An axis with everything decided: its range, where its tics are and what they say.
 struct Scale {
-  double low = 0, high = 1;  ///< along() the axis; low < high also where it falls
-  bool logarithmic = false, falling = false, named = false;
+  double low = 0, high = 1;  ///< along() the axis
+  bool logarithmic = false, named = false;
   struct Tic {
     double at;
     std::string text;  ///< markup; of a named axis the name as it is
@@ -35,10 +35,7 @@ struct Scale {
   std::string title;  ///< markup: quantity and unit
 
   /// Part of the way along the axis, 0 to 1 from left to right or from bottom to top; NaN where it has none.
-  double part(double value) const {
-    const double rising = (along(value, logarithmic) - low) / (high - low);
-    return falling ? 1 - rising : rising;
-  }
+  double part(double value) const { return (along(value, logarithmic) - low) / (high - low); }
 };
 
 /// Least and largest of what is added, along() an axis; what has no place on it is left out.
@@ -68,7 +65,6 @@ Scale scale_of(const ChartAxis& axis, const Extent& extent, double margin, int m
 struct Key {
   std::string name = {};  ///< as it is
   const ChartLine *line = nullptr, *band = nullptr;
-  const ChartBars* bars = nullptr;
   const Stretch* stretch = nullptr;
   double x = 0, y = 0;  ///< of the left end of its sample, half-way up
 };

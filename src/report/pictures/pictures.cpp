@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -19,13 +21,9 @@ namespace tribofit {
 namespace {
 
 /// The name of a chart's file, without the ending: safe, and its own.
-std::string free_name(const Chart& chart, std::set<std::string>& taken) {
-  std::string id;
-  for (const char c : chart.id) {
-    const bool safe = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-    id += safe ? c : '-';
-  }
-  if (id.empty()) id = "chart";
+std::string free_name(std::string id, std::set<std::string>& taken) {
+  std::ranges::replace_if(
+      id, [](unsigned char c) { return c >= 0x80 || (!std::isalnum(c) && c != '_'); }, '-');
   std::string name = id;
   for (int k = 2; !taken.insert(name).second; ++k) name = id + "-" + std::to_string(k);
   return name;
@@ -79,7 +77,7 @@ PictureFiles::PictureFiles(const Report& report, const std::string& folder, Pict
     for (const ReportItem& item : section.items) {
       const Chart* chart = std::get_if<Chart>(&item);
       if (chart == nullptr || chart->panels.empty()) continue;
-      const std::string name = free_name(*chart, taken) + "." + name_of(format), title = one_line(chart->title);
+      const std::string name = free_name(chart->id, taken) + "." + name_of(format), title = one_line(chart->title);
       const std::string svg = drawn(*chart);
       files.emplace_back(name, format == PictureFormat::svg ? svg : converted(svg, format));
       captions += (captions.empty() ? "" : "\n") + name + "\n" + title + "\n";

@@ -100,7 +100,6 @@ Scale scale_of(const ChartAxis& axis, const Extent& extent, double margin, int m
   Scale scale;
   scale.named = !axis.names.empty();
   scale.logarithmic = axis.logarithmic && !scale.named;
-  scale.falling = axis.falling;
   scale.title = axis.unit.empty() ? axis.quantity : axis.quantity + " [" + axis.unit + "]";
   if (scale.named) {
     scale.low = -0.5;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kEllipsis = "\xE2\x80\xA6";
 
-/// Widths of ' ' to '~' in Arial, Helvetica and Liberation Sans, which have them in common [1/1000 of the size].
+/// Widths of ' ' to '~' in Arial, Helvetica and Liberation Sans [1/1000 of the size].
 constexpr std::array<int, 95> kWidths = {
     278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333,  278, 278, 556, 556, 556,
     556, 556, 556, 556, 556, 556, 556, 278, 278, 584, 584, 584, 556, 1015, 667, 667, 722, 722, 667,

@@ -19,7 +19,7 @@ struct PictureSizes {
   double half_capital = 0.35;                ///< from the foot of a line half-way up its letters, in its size
   double halo = 2;                           ///< of the pen behind letters that have one [pt]
   double text_line = 3.4, mark_line = 3;     ///< heights of a line of text, and of words beside marks
-  double beside_mark = 0.8, above_label = 2.6;
+  double beside_mark = 0.8;
 
   double tic = 0.7, tic_gap = 1.2;     ///< a stroke at an axis; between the axis and its numbers
   std::size_t most_names = 40;         ///< at an axis: more cannot be read
@@ -30,8 +30,6 @@ struct PictureSizes {
 
   double tolerance = 0.02, symbol_cell = 0.08;  ///< what is nearer to a line, or to a symbol, is not drawn
   double half_cap = 0.4;                        ///< of a bar of errors
-  double hatching = 1.1;                        ///< along the abscissa
-  double bars_together = 0.76;                  ///< of the distance between names
 };
 inline constexpr PictureSizes sizes;
 inline constexpr double kMillimetresPerPoint = 25.4 / 72;

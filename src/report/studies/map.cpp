@@ -55,30 +55,14 @@ ReportTable regimes_table(const MapRows& rows) {
   return table;
 }
 
-/// What was found: how much of the map sticks, and between which ends the printed measure lies.
+/// How much of the map sticks.
 std::string headline(const MapRequest& request, const MapRows& rows) {
-  const Variable &x = request.x.variable, &y = request.y.variable;
   const std::size_t all = request.x.values.size() * rows.size(), sticking = count_of(rows, Regime::stick_slip);
-  std::string text =
-      sticking == all ? fmt::format("Stick-slip everywhere in {} x {} cells over {} and {}.",
-                                    grouped(request.x.values.size()), grouped(rows.size()), x.name, y.name)
-      : sticking == 0 ? fmt::format("No stick-slip anywhere in {} x {} cells over {} and {}.",
-                                    grouped(request.x.values.size()), grouped(rows.size()), x.name, y.name)
-                      : fmt::format("Stick-slip in {} of {} cells over {} and {}.", grouped(sticking), grouped(all),
-                                    x.name, y.name);
-  const std::string measure = "peak-to-peak";
-  for (std::size_t k = 0; k < measures().size(); ++k) {
-    const auto least = extreme_of(request, rows, k, false), most = extreme_of(request, rows, k, true);
-    if (measures()[k].name != measure || !least || !most) continue;
-    const auto place = [&](const auto& cell) {
-      return fmt::format("{} {}{}, {} {}{}", x.name, significant(cell.x / x.si, 3), unit_behind(x.unit), y.name,
-                         significant(cell.y / y.si, 3), unit_behind(y.unit));
-    };
-    text += fmt::format(" The displacement of the block goes from {} {} peak to peak ({}) to {} {} ({}).",
-                        significant(least->value / measures()[k].si, 3), measures()[k].unit, place(*least),
-                        significant(most->value / measures()[k].si, 3), measures()[k].unit, place(*most));
-  }
-  return text;
+  const std::string cells = grouped(request.x.values.size()) + " x " + grouped(rows.size()) + " cells";
+  const std::string what = sticking == 0     ? "No stick-slip anywhere in " + cells
+                           : sticking == all ? "Stick-slip everywhere in " + cells
+                                             : "Stick-slip in " + grouped(sticking) + " of " + grouped(all) + " cells";
+  return fmt::format("{} over {} and {}.", what, request.x.variable.name, request.y.variable.name);
 }
 
 ReportTable extremes_table(const MapRequest& request, const MapRows& rows) {
@@ -102,8 +86,7 @@ ReportTable extremes_table(const MapRequest& request, const MapRows& rows) {
 ReportTable values_table(const MapRequest& request, const MapRows& rows, const MeasureInfo& measure) {
   constexpr std::size_t kColumns = 8, kRows = 12;
   const auto& all = measures();
-  const auto k = static_cast<std::size_t>(
-      std::find_if(all.begin(), all.end(), [&](const MeasureInfo& m) { return m.name == measure.name; }) - all.begin());
+  const auto k = static_cast<std::size_t>(std::ranges::find(all, measure.name, &MeasureInfo::name) - all.begin());
   const Variable &x = request.x.variable, &y = request.y.variable;
   ReportTable table(fmt::format("{} over {} (across) and {} (down)", with_unit(measure.name, measure.unit),
                                 with_unit(x.name, x.unit), with_unit(y.name, y.unit)));

@@ -123,7 +123,7 @@ Report study_report(const StudiedMachine& studied, const char* kind, std::string
   std::vector<std::string> inputs = options.inputs;
   std::string checksum;
   if (studied.record) {
-    if (inputs.empty()) inputs = {studied.record->path};
+    inputs = options.inputs_or(studied.record->path);
     checksum = fmt::format(" Checksum of the rows of the record (XXH64): {:016x}.", studied.record->checksum);
   }
   const std::string command = command_line(words_of({"study", kind}, options.arguments), inputs);

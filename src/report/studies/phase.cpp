@@ -15,45 +15,41 @@ std::string speed_text(const Portrait& portrait) {
   return significant(portrait.velocity / kMillimetre, 4) + " mm/s";
 }
 
-Chart portrait_chart(const StudiedMachine& studied, const Portrait& portrait, std::size_t number) {
-  Chart chart = portrait_plane(
-      fmt::format("phase-{}", number),
-      fmt::format("Portrait at {}: {}", speed_text(portrait), to_string(portrait.settled.regime)), portrait.velocity);
-  add_loop(drawn_motion("from the start", portrait.start), {.colour = Colour::grey, .dash = Dash::dotted, .width = 1},
-           chart);
+Chart portrait_of(const StudiedMachine& studied, const Portrait& portrait, std::size_t number) {
+  std::vector<DrawnMotion> motions = {
+      {drawn_motion("from the start", portrait.start), {.colour = Colour::grey, .dash = Dash::dotted, .width = 1}}};
   if (portrait.cycle.size() > 0) {
-    add_loop(drawn_motion("settled cycle", portrait.cycle), {.colour = Colour::black, .width = 2}, chart, true);
+    motions.push_back({drawn_motion("settled cycle", portrait.cycle), {.colour = Colour::black, .width = 2}, true});
   }
   const BlockMotion measured = measured_motion(studied, portrait.velocity);
   if (measured.size() > 0) {
-    add_loop(drawn_motion(fmt::format("measured, {} cycles", measured.cycles), measured),
-             {.colour = Colour::red, .dash = Dash::dashed, .width = 1.2}, chart);
+    motions.push_back({drawn_motion(fmt::format("measured, {} cycles", measured.cycles), measured),
+                       {.colour = Colour::red, .dash = Dash::dashed, .width = 1.2}});
   }
+  Chart chart =
+      portrait_chart(fmt::format("phase-{}", number),
+                     fmt::format("Portrait at {}: {}", speed_text(portrait), to_string(portrait.settled.regime)),
+                     portrait.velocity, motions);
   chart.height = 380;
   chart.half = true;
   return chart;
 }
 
 Chart all_portraits(const std::vector<Portrait>& study, const std::vector<std::size_t>& drawn) {
-  Chart chart = portrait_plane("phase-all", "Settled cycles at all speeds", 0);
-  chart.marks.clear();
+  std::vector<DrawnMotion> motions;
   for (std::size_t k = 0; k < drawn.size(); ++k) {
     const Portrait& portrait = study[drawn[k]];
-    if (portrait.cycle.size() > 0)
-      add_loop(drawn_motion(speed_text(portrait), portrait.cycle), stroke_of(k), chart, true);
+    if (portrait.cycle.size() == 0) continue;
+    motions.push_back({drawn_motion(speed_text(portrait), portrait.cycle), stroke_of(k), true});
   }
-  return chart;
+  return portrait_chart("phase-all", "Settled cycles at all speeds", 0, motions);
 }
 
 Chart time_chart(const Portrait& portrait, std::size_t number) {
-  Chart chart{.id = fmt::format("motion-{}", number),
-              .title = "Motion at " + speed_text(portrait) + " over time, from the start",
-              .x = {.quantity = "time", .unit = "s", .digits = 7},
-              .marks = {disc_mark(portrait.velocity)},
-              .height = 520};
-  const DrawnMotion motion = drawn_motion("motion", portrait.start);
-  add_over_time(motion, {"friction", "1"}, stroke_of(0), chart);
-  shade_sticks(motion, chart);
+  Chart chart =
+      motion_chart(fmt::format("motion-{}", number), "Motion at " + speed_text(portrait) + " over time, from the start",
+                   portrait.velocity, {"friction", "1"}, {{drawn_motion("motion", portrait.start), stroke_of(0)}});
+  chart.height = 520;
   return chart;
 }
 
@@ -142,7 +138,7 @@ Report report_of(const StudiedMachine& studied, const std::vector<Portrait>& stu
   if (drawn.size() > 1) portraits.add(all_portraits(study, drawn));
   for (std::size_t k = 0; k < drawn.size(); ++k) {
     const Portrait& portrait = study[drawn[k]];
-    portraits.add(portrait_chart(studied, portrait, k + 1));
+    portraits.add(portrait_of(studied, portrait, k + 1));
     times.add(time_chart(portrait, k + 1));
     if (portrait.cycle.size() > 0) moving.add(animation_of(studied, portrait, k + 1));
   }

@@ -7,16 +7,6 @@
 namespace tribofit {
 namespace {
 
-/// What matters most for one measure (an index in measures()): "stiffness (-0.512), mass (+0.5)".
-std::string ranking_sentence(const std::vector<Sensitivity>& study, std::size_t measure) {
-  std::vector<std::string> list;
-  for (const std::size_t i : ranked(study, measure)) {
-    const double e = study[i].elasticities[measure];
-    if (!std::isnan(e)) list.push_back(fmt::format("{} ({})", study[i].variable.name, with_sign(e, 3)));
-  }
-  return list.empty() ? "nothing can be said here" : fmt::format("{}", fmt::join(list, ", "));
-}
-
 ReportTable elasticity_table(const std::vector<Sensitivity>& study) {
   ReportTable table("Elasticities: per cent of a measure for one per cent of a number");
   table.text({"number"}).numbers({"value"}).text({"unit"});
@@ -61,21 +51,22 @@ Chart sweep_chart(const std::vector<Sensitivity>& study, std::size_t measure) {
   return chart;
 }
 
-Chart bar_chart(const std::vector<Sensitivity>& study, std::size_t measure) {
+Chart elasticity_chart(const std::vector<Sensitivity>& study, std::size_t measure) {
   const MeasureInfo& info = measures()[measure];
   Chart chart = half_chart("elasticity-" + info.name, "What moves the " + info.name,
-                           {"change of the " + info.name + " for 1 % of the number", "%"}, {});
-  ChartAxis& names = chart.panels[0];
-  names.falling = true;  // the largest stands on top
-  ChartBars bars{info.name, {}};
-  for (const std::size_t i : ranked(study, measure)) {
-    const double e = study[i].elasticities[measure];
+                           {.quantity = "change of the " + info.name + " for 1 % of the number", .unit = "%"}, {});
+  std::vector<std::string>& names = chart.panels[0].names;
+  ChartLine& line = chart.line(info.name, dots(Colour::blue, Symbol::circle, 8));
+  const std::vector<std::size_t> order = ranked(study, measure);
+  for (auto i = order.rbegin(); i != order.rend(); ++i) {  // the largest on top
+    const double e = study[*i].elasticities[measure];
     if (!std::isfinite(e)) continue;
-    names.names.push_back(study[i].variable.name);
-    bars.values.push_back(e);
+    line.add(e, static_cast<double>(names.size()));
+    names.push_back(study[*i].variable.name);
   }
-  chart.bars.push_back(std::move(bars));
-  chart.height = 110 + 26 * static_cast<int>(names.names.size());
+  chart.marks = {{0, true, Dash::solid}};
+  chart.x.from_zero = true;
+  chart.height = 110 + 26 * static_cast<int>(names.size());
   return chart;
 }
 
@@ -123,9 +114,10 @@ void write_study(const std::string& folder, const std::vector<Sensitivity>& stud
 
 Report report_of(const StudiedMachine& studied, const std::vector<Sensitivity>& study, const ReportOptions& options) {
   std::vector<std::string> lead;
-  ReportSection bars{"elasticities", "Ranked elasticities", {}}, sweeps{"sweeps", "Each measure over each number", {}};
+  ReportSection ranking{"elasticities", "Ranked elasticities", {}},
+      sweeps{"sweeps", "Each measure over each number", {}};
   for (std::size_t k = 0; k < measures().size(); ++k) {
-    bars.add(bar_chart(study, k));
+    ranking.add(elasticity_chart(study, k));
     sweeps.add(sweep_chart(study, k));
     const std::vector<std::size_t> order = ranked(study, k);
     if (order.empty() || !std::isfinite(study[order.front()].elasticities[k])) continue;
@@ -133,15 +125,12 @@ Report report_of(const StudiedMachine& studied, const std::vector<Sensitivity>& 
     lead.push_back(fmt::format("{} answers most to {} ({} % for 1 %)", measures()[k].name, first.variable.name,
                                with_sign(first.elasticities[k], 3)));
   }
-  bars.add(elasticity_table(study));
-  bars.heading("What matters most");
-  for (std::size_t k = 0; k < measures().size(); ++k) {
-    bars.item(measures()[k].name + ": " + ranking_sentence(study, k));
-  }
-  if (!options.csv_written) bars.plain("--csv FOLDER writes the sweeps behind these (sensitivity.csv)");
+  ranking.add(elasticity_table(study));
   const std::string said = lead.empty() ? "At this machine no measure has an elasticity."
                                         : capitalised(fmt::format("{}.", fmt::join(lead, "; ")));
-  return study_report(studied, "sensitivity", said, {std::move(bars), std::move(sweeps)}, options);
+  ranking.plain(said, Medium::terminal);
+  if (!options.csv_written) ranking.plain("--csv FOLDER writes the sweeps behind these (sensitivity.csv)");
+  return study_report(studied, "sensitivity", said, {std::move(ranking), std::move(sweeps)}, options);
 }
 
 }  // namespace tribofit

@@ -82,7 +82,7 @@ ReportTable own_table(const StudiedMachine& studied, const SpeedStudy& study) {
   return table;
 }
 
-/// The measures over speed at `most` speeds, evenly; a second row where a motion that begins in sliding differs.
+/// The measures at `most` speeds; a second row where a motion that begins in sliding differs.
 ReportTable speed_table(const SpeedStudy& study, std::size_t most) {
   ReportTable table = settled_table("Over speed", {"begun in"});
   const std::vector<std::size_t> shown = thinned(study.velocity.size(), most);
@@ -140,8 +140,8 @@ std::array<Way, 2> ways_of(const SpeedStudy& study) {
            {"begun in sliding (way down)", study.down, study.critical.stick_returns, down}}};
 }
 
-/// Adds the points of a way, and the line through them with its jump where stick vanishes or returns: the measure of
-/// the sticking motion goes on to that speed as straight as it came.
+/// The points of a way, and the line through them with its jump where stick vanishes or returns: the measure of the
+/// sticking motion goes on to that speed as straight as it came.
 void add_way(const SpeedStudy& study, const Way& way, const MeasureInfo& measure, std::size_t panel, Chart& chart) {
   ChartLine line{.name = way.name, .stroke = way.stroke, .panel = panel}, points = line;
   line.stroke.symbol = Symbol::none;
