@@ -167,9 +167,10 @@ std::optional<Named> Stepwise::leader_of_all(bool is_noise) {
     const Trial& to_beat = leader && leader->result.coarse.usable ? leader->result.coarse : best().coarse;
     Named other = leader_beside(law, &to_beat);
     const Trial& trial = other.result.trial;
-    if (!other.result.passes || standing_of(context_, trial) == LawStanding::another ||
-        !beats(context_, trial, best().fine))
-      continue;
+    if (!other.result.passes || standing_of(context_, trial) == LawStanding::another) continue;
+    // Beside a worse law an effect may do no more than make the best law of it.
+    const Candidate& candidate = candidates_[other.result.candidate];
+    if (!compare(context_, context_.fine, best().fine, trial, candidate, 1, least_).passes) continue;
     if (!leader || beats(context_, trial, leader->result.trial)) leader = std::move(other);
   }
   return leader;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "limits.hpp"
+#include "statistics/reductions.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
@@ -30,7 +31,38 @@ Jump jump_beside(std::span<const double> friction, double place, double reach) {
   return {static_cast<double>(at) - 0.5, around > 0 ? most / around : 0};
 }
 
+/// Where a signal goes from one side of zero to the other [samples]: from where it last was beyond zero, between swings
+/// that reach a part of its usual size, so that noise about zero is none.
+std::vector<double> sign_changes(std::span<const double> x) {
+  std::vector<double> sizes = thinned(x, kThinned), places;
+  for (double& size : sizes) size = std::abs(size);
+  if (sizes.empty()) return places;
+  const double reached = kSlidesFreely * median(std::move(sizes));
+  double side = 0;
+  std::size_t last = 0;  // sample on the side that the signal leaves
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (side * x[i] > 0) last = i;
+    if (std::abs(x[i]) < reached || side * x[i] > 0) continue;
+    if (side != 0) places.push_back(static_cast<double>(last) + x[last] / (x[last] - x[last + 1]));
+    side = x[i] > 0 ? 1 : -1;
+    last = i;
+  }
+  return places;
+}
+
 }  // namespace
+
+double delay_at_reversals(std::span<const double> friction, std::span<const double> velocity) {
+  const std::vector<double> of_friction = sign_changes(friction), of_velocity = sign_changes(velocity);
+  std::vector<double> delays;
+  for (const double at : of_velocity) {
+    const auto after = std::ranges::lower_bound(of_friction, at);
+    double delay = after == of_friction.end() ? HUGE_VAL : *after - at;
+    if (after != of_friction.begin() && at - *(after - 1) < delay) delay = *(after - 1) - at;
+    if (std::isfinite(delay)) delays.push_back(delay);
+  }
+  return delays.size() < kFewestForMedian ? 0 : median(std::move(delays));
+}
 
 ClockDriftEstimate find_clock_drift(std::span<const double> friction, const std::vector<double>& resticks) {
   ClockDriftEstimate found;

@@ -21,6 +21,10 @@ struct ClockDriftEstimate {
 /// distance over time. resticks: [samples]. Cost: one look at every re-stick.
 ClockDriftEstimate find_clock_drift(std::span<const double> friction, const std::vector<double>& resticks);
 
+/// By how much later friction changes its sign than v_r does [samples], the median over the reversals of a motion; 0
+/// for fewer than three. Cost: a pass.
+double delay_at_reversals(std::span<const double> friction, std::span<const double> velocity);
+
 /// Moves the velocity to the clock of friction: sample i is that of i (1 - drift) - late. resticks move along. Returns
 /// what is missing at the ends.
 Ends follow_clock(std::vector<double>& velocity, double drift, double late, std::vector<double>& resticks);

@@ -23,10 +23,6 @@ HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double>
 /// velocity: where it was measured; restick: what it showed where it comes to rest.
 HealthItem check_bandwidth(const Motion& motion, std::span<const double> velocity, const LowPass& restick);
 
-/// Time between re-stick in the velocity and the jump of friction there, averaged over slips. `plateaus` are in blocks
-/// of `factor` samples of `relative_velocity`.
-HealthItem check_channel_delay(const Motion& motion, const Plateaus& plateaus, std::size_t factor);
-
 /// Friction brakes what slides: where it is negative though its sign is right, its zero is wrong.
 HealthItem check_friction_zero(const Motion& motion);
 

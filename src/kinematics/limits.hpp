@@ -116,17 +116,6 @@ inline constexpr double kLeastExplained = 0.5;
 inline constexpr double kErrorAfterHighPass = 1e-3, kErrorOfCreep = 0.5;
 
 // ---- clocks of the two channels
-/// Of the shorter of stick and slip, how far from re-stick a jump of friction is looked for: beyond is the next event.
-inline constexpr double kDelayReach = 0.25;
-/// [s]; in a longer window a slow rig whose jumps are not sharp (a drill string) shows a drift of the clocks that is
-/// none. The one time here that does not go with the record.
-inline constexpr double kLongestWindow = 0.01;
-/// The same in samples (fewer show no jump, more cost time for nothing), and slips that are looked at.
-inline constexpr std::size_t kMostDelays = 400;
-inline constexpr double kShortestDelay = 4, kLongestDelay = 2000;
-/// Of the fastest, where the velocity is at the edge of rest: above its noise, and near enough for a straight line.
-/// Change of friction from sample to sample at the jump over the others: less is a slope.
-inline constexpr double kEdgeOfRest = 0.05, kClearJump = 8;
 /// [s] and samples, from which a delay is worth a warning: a force sensor with a bandwidth of 500 Hz is late by the
 /// first (1/(2 pi f)), and the place of a jump is known to the second.
 inline constexpr double kDelayWarned = 3e-4, kDelayWarnedSamples = 2.5;

@@ -147,6 +147,7 @@ void MotionStages::undo_clock_drift() {
   const bool holds = motion_.velocity_low_pass.any() && !clocks_.drift.any() && clocks_.slips > 0;
   if (holds && std::abs(clocks_.at_start) < kHeldInput && clocks_.is_sharp) {
     follow_clock(trace_.velocity, 0, clocks_.at_start, low_pass_.resticks);
+    motion_.restick_delay = 0;
   }
   if (!clocks_.drift.any() || !options_.undo_distortions) return;
   motion_.clock_drift = clocks_.drift;
@@ -154,6 +155,7 @@ void MotionStages::undo_clock_drift() {
   const bool joined = motion_.clock_offset_std_error != 0;
   const Ends ends =
       follow_clock(trace_.velocity, clocks_.drift.value, joined ? clocks_.at_start : 0, low_pass_.resticks);
+  if (joined) motion_.restick_delay = 0;
   if (joined) motion_.clock_offset_std_error = 0.5 * trace_.duration() * clocks_.drift.std_error;
   lost_ = {std::max(lost_.head, ends.head), std::max(lost_.tail, ends.tail)};
   motion_.notes.push_back(fmt::format("velocity: moved by {} ppm of the time, to the clock of friction",

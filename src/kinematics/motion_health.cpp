@@ -104,14 +104,27 @@ HealthItem MotionStages::check_band() const {
 }
 
 HealthItem MotionStages::check_delay() const {
-  HealthItem item = kinematics::check_channel_delay(motion_, plateaus_in_motion(), search_.blocks.length);
-  const Estimate& drift = motion_.clock_drift;
+  HealthItem item{health_check::kChannelDelay, HealthItem::Status::ok,
+                  health_check::not_checked("no re-stick to compare the channels at")};
+  if (clocks_.slips == 0) return item;
+  const Estimate& drift = clocks_.drift;
+  const std::string slips = fmt::format("{} slips", clocks_.slips);
+  if (!clocks_.is_sharp && !drift.any()) {
+    item.message = health_check::not_checked(fmt::format("friction does not jump at re-stick ({})", slips));
+    return item;
+  }
+  const double delay = motion_.restick_delay;
+  item.message = fmt::format("friction jumps about {} ms {} the velocity reaches re-stick ({})",
+                             fixed(1e3 * std::abs(delay), 2), delay >= 0 ? "after" : "before", slips);
+  if (std::abs(delay) > std::max(kDelayWarned, kDelayWarnedSamples * motion_.step))
+    item.status = HealthItem::Status::warning;
   if (!drift.any()) return item;
-  item.status = std::max(item.status, HealthItem::Status::warning);
+  const bool corrected = motion_.clock_drift.any();
+  item.status = corrected ? std::max(item.status, HealthItem::Status::warning) : HealthItem::Status::problem;
   item.message += fmt::format(
-      "; friction fell behind the velocity by {} +/- {} ppm of the time ({} slips), "
-      "their clocks drift apart; corrected",
-      fixed(1e6 * drift.value, 2), fixed(1e6 * drift.std_error, 2), clocks_.slips);
+      "; friction falls behind the velocity by {} +/- {} ppm of the time, their clocks drift apart; {}",
+      fixed(1e6 * drift.value, 2), fixed(1e6 * drift.std_error, 2),
+      corrected ? "corrected" : "mu_k and the law's decay (alpha) are unreliable");
   return item;
 }
 

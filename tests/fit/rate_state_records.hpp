@@ -10,10 +10,9 @@
 
 #include "contact_apart.hpp"
 #include "tribofit/fit/rate_state.hpp"
+#include "tribofit/ingest/units.hpp"
 
 namespace tribofit {
-
-inline constexpr double kMicrometre = 1e-6;
 
 /// a = 0.010, b = 0.014, D_c = 10 um on a machine `times` as stiff as the critical one.
 inline RateStateMachine machine_of(StateEvolution evolution, double times, double a = 0.010, double b = 0.014) {

@@ -65,5 +65,27 @@ TEST_F(Gaps, MessagesNameTheLineOfTheRowsThatRemain) {
   expect_error(write(text), {}, "time goes backwards", "sort", rows + 2, "time_s");
 }
 
+/// A log begins before the block is loaded and ends after it is lifted; the zero of the load cell is off.
+TEST_F(Gaps, RowsBeforeTheLoadAndAfterItTakeNoPart) {
+  for (const double zero : {0.0, 0.4, -0.3}) {
+    std::string text = "time_s,force_N,load_N,v_r_mm_s\n";
+    for (std::size_t i = 0; i < 1000; ++i) {
+      const bool loaded = i >= 100 && i < 950;
+      text += fmt::format("{:.3f},{},{},5\n", 1e-3 * static_cast<double>(i), loaded ? 4 : 0, (loaded ? 10 : 0) + zero);
+    }
+    const Trace trace = read_trace(write(text));
+    ASSERT_EQ(trace.size(), 850U) << zero;
+    EXPECT_NEAR(trace.time.front(), 0.1, 1e-12) << "times stay those of the file";
+    EXPECT_NEAR(trace.friction.front(), 4 / (10 + zero), 1e-12) << zero;
+    EXPECT_THAT(trace.warnings, Contains(HasSubstr("150 of 1000 rows have no load")));
+  }
+}
+
+/// Within a test they are a fault that is named.
+TEST_F(Gaps, ARowWithoutLoadWithinTheTestIsRefused) {
+  expect_error(write("time_s,force_N,load_N,v_r_mm_s\n0,4,10,5\n0.1,4,10,5\n0.2,4,0,5\n0.3,4,10,5\n0.4,4,10,5\n"), {},
+               "the load is 0 N", "remove the rows without load", 4, "load_N");
+}
+
 }  // namespace
 }  // namespace tribofit

@@ -23,11 +23,19 @@ using Random = std::mt19937_64;
 
 /// A distortion that is undone, and its true value.
 struct Undone {
-  Estimate Motion::*found;
+  std::function<Estimate(const Motion&)> found;
   double truth;
 };
 
 /// What was done to a record, and the check that must name it.
+inline Estimate part_of_velocity(const Motion& motion) {
+  return {motion.velocity_response.response.part, motion.velocity_response.std_error};
+}
+
+inline Estimate part_of_friction(const Motion& motion) {
+  return {motion.friction_response.response.part, motion.friction_response.std_error};
+}
+
 struct Alteration {
   std::string name;
   std::function<void(Trace&, Random&)> apply;
@@ -129,6 +137,22 @@ inline std::function<void(Trace&, Random&)> compressed(double part) {
     double most = 0;
     for (const double v : trace.velocity) most = std::max(most, std::abs(v));
     for (double& v : trace.velocity) v *= 1 - part * (v / most) * (v / most);
+  };
+}
+
+/// Velocities against the disc, which turns forward, are read with less gain.
+inline std::function<void(Trace&, Random&)> less_against_disc(double part) {
+  return [=](Trace& trace, Random&) {
+    for (double& v : trace.velocity) v *= v < 0 ? 1 - part : 1;
+  };
+}
+
+/// The gain of friction falls by `part` at the largest.
+inline std::function<void(Trace&, Random&)> bent_friction(double part) {
+  return [=](Trace& trace, Random&) {
+    double most = 0;
+    for (const double mu : trace.friction) most = std::max(most, std::abs(mu));
+    for (double& mu : trace.friction) mu *= 1 - part * (mu / most) * (mu / most);
   };
 }
 
@@ -295,9 +319,11 @@ inline std::vector<Alteration> alterations() {
       {"one in five samples lost", lost(0.2, 1), "drop-outs"},
       {"disc from 4 to 8 rpm", then_at(8), "plateau-speed"},
       {"disc from 4 to 5 rpm", then_at(5), "plateau-speed"},
-      {"velocity: gain falls by 10 %", compressed(0.1), "plateau-speed", {{&Motion::compression, 0.1}}},
-      {"velocity: gain falls by 5 %", compressed(0.05), "plateau-speed", {{&Motion::compression, 0.05}}},
-      {"velocity: gain rises by 10 %", compressed(-0.1), "plateau-speed", {{&Motion::compression, -0.1}}},
+      {"velocity: gain falls by 10 %", compressed(0.1), "plateau-speed", {{part_of_velocity, 0.1}}},
+      {"velocity: gain falls by 5 %", compressed(0.05), "plateau-speed", {{part_of_velocity, 0.05}}},
+      {"velocity: gain rises by 10 %", compressed(-0.1), "plateau-speed", {{part_of_velocity, -0.1}}},
+      {"velocity: gain 5 % less against the disc", less_against_disc(0.05), "plateau-speed", {{part_of_velocity, 0.05}}},
+      {"friction: gain falls by 10 %", bent_friction(0.1), "friction-zero", {{part_of_friction, 0.1}}},
       {"clocks 50 ppm apart", clocks_apart(50), "channel-delay", {{&Motion::clock_drift, 5e-5}}},
       {"clocks 100 ppm apart", clocks_apart(100), "channel-delay", {{&Motion::clock_drift, 1e-4}}},
       {"clocks -200 ppm apart", clocks_apart(-200), "channel-delay", {{&Motion::clock_drift, -2e-4}}},

@@ -85,7 +85,7 @@ TEST_P(Altered, TheFaultIsNamedAndTheParametersStay) {
   const Identification found = identified(altered);
   EXPECT_NE(item(found.motion, alteration.check).status, HealthItem::Status::ok);
   for (const Undone& undone : alteration.undone) {
-    const Estimate& value = found.motion.*undone.found;
+    const Estimate value = undone.found(found.motion);
     EXPECT_NEAR(value.value, undone.truth, 4 * value.std_error);
     EXPECT_LT(value.std_error, 0.15 * std::abs(undone.truth));
   }

@@ -41,7 +41,7 @@ enum class ParameterSearch {
   ringing_line,       ///< from the strongest line that begins anew at each break-away
   moment_of_change,   ///< from the times at which the parameter before it may have begun to act
   distance_of_change,  ///< from the distance since a reversal at which friction changes most
-  jump_at_restick      ///< from such values, and by how much later friction jumps than the velocity comes to rest
+  jump_at_restick      ///< from such values, and by how much later friction jumps than v_r rests or turns round
 };
 
 /// One parameter of a law or of an effect as a person sees it.

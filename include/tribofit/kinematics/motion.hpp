@@ -103,7 +103,7 @@ struct Motion {
   FilterSource friction_filter_source = FilterSource::unknown;
   UndoneResponse velocity_response, friction_response;
   Estimate clock_drift;               ///< by which friction fell behind the velocity, over time [1]
-  double restick_delay = 0;           ///< by which friction jumps after v_r comes to rest [s]; 0: not known
+  double restick_delay = 0;           ///< by which friction jumps after v_r rests or turns round [s]; 0: not known
   bool sticks = false;                ///< the trace has a plateau of stick
   StickRule stick;                    ///< as the user said
   double clock_offset_std_error = 0;  ///< as in Trace [s]; NaN: not known
