@@ -18,7 +18,7 @@ Effect::~Effect() = default;
 
 namespace {
 
-constexpr std::size_t kBesideTheCatalogue = 3;  // alternatives of Effect: forms of others, and Formula
+constexpr std::size_t kBesideTheCatalogue = 4;  // alternatives of Effect: forms of others, and Formula
 
 /// The alternatives of Effect that are in the catalogue, default-constructed.
 template <std::size_t... I>

@@ -94,7 +94,8 @@ void leave_out_unloaded_ends(FileRecord& recording) {
   const auto first = std::ranges::find_if(load, loaded);
   if (first == load.end()) return;  // refused where friction is made
   const auto last = std::find_if(load.rbegin(), load.rend(), loaded).base();
-  const auto begin = static_cast<std::size_t>(first - load.begin()), end = static_cast<std::size_t>(last - load.begin());
+  const auto begin = static_cast<std::size_t>(first - load.begin()),
+             end = static_cast<std::size_t>(last - load.begin());
   const std::size_t without = load.size() - (end - begin);
   if (without == 0) return;
   recording.warnings.push_back(

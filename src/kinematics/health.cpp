@@ -200,10 +200,11 @@ HealthItem check_bandwidth(const Motion& motion, std::span<const double> velocit
 HealthItem check_friction_zero(const Motion& motion) {
   const UndoneResponse& response = motion.friction_response;
   if (!motion.friction_drives && response.any()) {
-    return {health_check::kFrictionZero, Status::warning,
-            fmt::format("friction rises ever slower in stick, where it is the force of the spring: its gain is {} +/- {} % "
-                        "less at the highest reading; corrected",
-                        general(100 * response.response.part, 3), general(100 * response.std_error, 2))};
+    return {
+        health_check::kFrictionZero, Status::warning,
+        fmt::format("friction rises ever slower in stick, where it is the force of the spring: its gain is {} +/- {} % "
+                    "less at the highest reading; corrected",
+                    general(100 * response.response.part, 3), general(100 * response.std_error, 2))};
   }
   if (!motion.friction_drives) return {health_check::kFrictionZero, Status::ok, "friction brakes what slides"};
   return {

@@ -226,8 +226,7 @@ void MotionStages::settle_signs_and_levels() {
   if (scale == 0) scale = kinematics::largest_of(motion_.relative_velocity);
   if (disc_.largest > 0 || !is_block()) kinematics::settle_friction_sign(motion_, scale);
   if (!search_.sticks) {
-    motion_.restick_delay =
-        motion_.step * kinematics::delay_at_reversals(motion_.friction, motion_.relative_velocity);
+    motion_.restick_delay = motion_.step * kinematics::delay_at_reversals(motion_.friction, motion_.relative_velocity);
   }
 }
 

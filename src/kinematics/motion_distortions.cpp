@@ -8,9 +8,9 @@
 #include "limits.hpp"
 #include "motion_stages.hpp"
 #include "net_displacement.hpp"
+#include "static_responses.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/output/digits.hpp"
-#include "static_responses.hpp"
 #include "undo_low_pass.hpp"
 
 // The stages of a motion that undo what its channels did to their readings.
@@ -97,8 +97,8 @@ void MotionStages::undo_friction_response() {
   const StaticResponse& found = motion_.friction_response.response;
   if (!found.any()) return;
   for (double& mu : trace_.friction) mu = found.undone(mu);
-  motion_.notes.push_back(fmt::format("friction: its gain is {} % less at the highest reading; corrected",
-                                      general(100 * found.part, 3)));
+  motion_.notes.push_back(
+      fmt::format("friction: its gain is {} % less at the highest reading; corrected", general(100 * found.part, 3)));
 }
 
 /// One that the user states is undone whether it shows or not.

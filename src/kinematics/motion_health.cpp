@@ -121,10 +121,10 @@ HealthItem MotionStages::check_delay() const {
   if (!drift.any()) return item;
   const bool corrected = motion_.clock_drift.any();
   item.status = corrected ? std::max(item.status, HealthItem::Status::warning) : HealthItem::Status::problem;
-  item.message += fmt::format(
-      "; friction falls behind the velocity by {} +/- {} ppm of the time, their clocks drift apart; {}",
-      fixed(1e6 * drift.value, 2), fixed(1e6 * drift.std_error, 2),
-      corrected ? "corrected" : "mu_k and the law's decay (alpha) are unreliable");
+  item.message +=
+      fmt::format("; friction falls behind the velocity by {} +/- {} ppm of the time, their clocks drift apart; {}",
+                  fixed(1e6 * drift.value, 2), fixed(1e6 * drift.std_error, 2),
+                  corrected ? "corrected" : "mu_k and the law's decay (alpha) are unreliable");
   return item;
 }
 
@@ -149,8 +149,8 @@ HealthItem MotionStages::check_level() const {
 
 void MotionStages::compare_plateau() {
   // What moves a velocity that is nonlinear from omega r is neither radius nor gain.
-  const bool is_nonlinear =
-      samples_->velocity_is_slew_limited() || (zero_.kind == BlockZero::Kind::uneven && !motion_.velocity_response.any());
+  const bool is_nonlinear = samples_->velocity_is_slew_limited() ||
+                            (zero_.kind == BlockZero::Kind::uneven && !motion_.velocity_response.any());
   if (!is_block() || !speed_was_stated_ || !search_.sticks || is_nonlinear) return;
   kinematics::PlateauRatio ratio = plateau_ratio(motion_, plateaus_in_motion(), search_.blocks.length);
   const double rounding = kinematics::rounding_of_level(samples_->velocity_step(), search_.noise);

@@ -140,18 +140,17 @@ BlockZero find_zero_of_relative(const Trace& trace, const PlateauSearch& search,
 void add_zero(const BlockZero& zero, bool speed_was_stated, const UndoneResponse& response, HealthItem& item) {
   if (zero.kind == BlockZero::Kind::none) return;
   const bool is_zero = zero.kind == BlockZero::Kind::zero;
-  item.status = is_zero || response.any() ? std::max(item.status, HealthItem::Status::warning)
-                                          : HealthItem::Status::problem;
+  item.status =
+      is_zero || response.any() ? std::max(item.status, HealthItem::Status::warning) : HealthItem::Status::problem;
   item.message += fmt::format("; the block has no net displacement, but its mean velocity is {} mm/s: ",
                               general(1e3 * zero.mean.value, 3));
   const double part = response.response.part;
   item.message +=
-      is_zero ? "the velocity has a zero error; corrected"
-      : response.any()
-          ? fmt::format("the velocity channel is nonlinear: its gain is {} % {} {}; corrected",
-                        general(100 * std::abs(part), 3), part > 0 ? "less" : "more",
-                        response.response.form == StaticResponse::Form::one_sided ? "against the disc"
-                                                                                  : "at the highest speed")
+      is_zero          ? "the velocity has a zero error; corrected"
+      : response.any() ? fmt::format("the velocity channel is nonlinear: its gain is {} % {} {}; corrected",
+                                     general(100 * std::abs(part), 3), part > 0 ? "less" : "more",
+                                     response.response.form == StaticResponse::Form::one_sided ? "against the disc"
+                                                                                               : "at the highest speed")
       : speed_was_stated
           ? "the velocity channel is nonlinear, or samples are missing; mu_k and the law's decay (alpha) are "
             "unreliable"

@@ -60,8 +60,8 @@ double left_by_balance(const std::vector<double>& friction, const std::vector<do
     count += n;
   }
   const Eigen::Vector3d scale = sums.diagonal().head<3>().cwiseSqrt().cwiseMax(std::numeric_limits<double>::min());
-  const Eigen::Matrix3d normal = scale.cwiseInverse().asDiagonal() * sums.topLeftCorner<3, 3>() *
-                                 scale.cwiseInverse().asDiagonal();
+  const Eigen::Matrix3d normal =
+      scale.cwiseInverse().asDiagonal() * sums.topLeftCorner<3, 3>() * scale.cwiseInverse().asDiagonal();
   const Eigen::Vector3d right = sums.col(3).head<3>().cwiseQuotient(scale);
   return (sums(3, 3) - normal.ldlt().solve(right).dot(right)) / std::max(1.0, count);
 }
@@ -148,8 +148,7 @@ Bend bend_of(const std::vector<Ramp>& ramps, const StaticResponse& undone) {
   out.part = part_of(0, n);
   out.halves = {part_of(0, n / 2), part_of(n / 2, n)};
   double scatter = 0, square = 0;
-  for (std::size_t k = 0; k < n; ++k)
-    scatter += std::pow(products[k] - out.part * squares[k], 2), square += squares[k];
+  for (std::size_t k = 0; k < n; ++k) scatter += std::pow(products[k] - out.part * squares[k], 2), square += squares[k];
   out.std_error = square > 0 ? std::sqrt(scatter) / square : 0;
   return out;
 }

@@ -19,11 +19,11 @@ struct LocalDerivatives {
 /// has a corner nearby, of third degree over a window that ends before it or begins behind it: of several windows that
 /// hold the sample the one that leaves least (I. Gijbels, A. Lambert, P. Qiu, J. Nonparametric Statistics 19 (2007)
 /// 77, doi:10.1080/10485250601097312). At a corner itself, which the window that ends there follows and the one that
-/// begins there, half of the difference of their slopes is an error too. Errors are those of independent noise, as large as most windows show it.
-/// A signal shorter than a window: shorter windows; fewer than 7 samples: all derivatives are 0.
-/// corners: first samples behind corners that are known, ascending: windows beside one are narrower, none reaches over
-/// it, and where two are too near for a window between them, errors are ten times as large. Cost: proportional to
-/// samples times window.
+/// begins there, half of the difference of their slopes is an error too. Errors are those of independent noise, as
+/// large as most windows show it. A signal shorter than a window: shorter windows; fewer than 7 samples: all
+/// derivatives are 0. corners: first samples behind corners that are known, ascending: windows beside one are narrower,
+/// none reaches over it, and where two are too near for a window between them, errors are ten times as large. Cost:
+/// proportional to samples times window.
 LocalDerivatives local_derivatives(std::span<const double> signal, double step, std::size_t half,
                                    std::span<const std::size_t> corners = {});
 

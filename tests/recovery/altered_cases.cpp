@@ -126,7 +126,8 @@ void add_limits(List& list) {
     list.add_one(fmt::format("velocity: gain {} % less against the disc", 100 * part), less_against_disc(part),
                  compression);
   for (const double part : {0.02, 0.05, 0.1, 0.2})
-    list.add_one(fmt::format("friction: gain falls by {} %", 100 * part), bent_friction(part), {"friction-compression"});
+    list.add_one(fmt::format("friction: gain falls by {} %", 100 * part), bent_friction(part),
+                 {"friction-compression"});
   for (const double limit : {1.0, 1.5, 3.0})
     list.add_one(fmt::format("velocity: saturates at {} of the fastest", limit), saturated(limit), compression);
 }

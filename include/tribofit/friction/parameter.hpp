@@ -36,10 +36,10 @@ enum class ParameterScope {
 
 /// How a search for a parameter begins.
 enum class ParameterSearch {
-  grid,               ///< from `start_grid_points` values
-  steady_line,        ///< from the strongest spectral line that runs through the whole record
-  ringing_line,       ///< from the strongest line that begins anew at each break-away
-  moment_of_change,   ///< from the times at which the parameter before it may have begun to act
+  grid,                ///< from `start_grid_points` values
+  steady_line,         ///< from the strongest spectral line that runs through the whole record
+  ringing_line,        ///< from the strongest line that begins anew at each break-away
+  moment_of_change,    ///< from the times at which the parameter before it may have begun to act
   distance_of_change,  ///< from the distance since a reversal at which friction changes most
   jump_at_restick      ///< from such values, and by how much later friction jumps than v_r rests or turns round
 };

@@ -14,19 +14,19 @@ namespace tribofit {
 /// What stands between a motion and its record. Applied in the order of the members; zero (gain: one) means absent.
 struct Sensors {
   // The friction channel.
-  double mass_below = 0;         ///< m_s below the force sensor [kg]: mu - m_s a_b/N
-  double force_bandwidth = 0;    ///< corner of a second-order low-pass [Hz]
-  double force_damping = 0.7;    ///< its damping ratio [1]
-  double friction_low_pass = 0;  ///< corner of a first-order low-pass [Hz]
-  double friction_delay = 0;     ///< later than the velocity [s]; negative: earlier
+  double mass_below = 0;                  ///< m_s below the force sensor [kg]: mu - m_s a_b/N
+  double force_bandwidth = 0;             ///< corner of a second-order low-pass [Hz]
+  double force_damping = 0.7;             ///< its damping ratio [1]
+  double friction_low_pass = 0;           ///< corner of a first-order low-pass [Hz]
+  double friction_delay = 0;              ///< later than the velocity [s]; negative: earlier
   StaticResponse friction_response = {};  ///< its full scale is the largest of the record
   // The velocity channel.
-  double velocity_gain = 1;         ///< reading over true velocity [1]
-  double velocity_high_pass = 0;    ///< first-order corner [Hz]: dv_m/dt + 2 pi f_c v_m = dv_b/dt
+  double velocity_gain = 1;               ///< reading over true velocity [1]
+  double velocity_high_pass = 0;          ///< first-order corner [Hz]: dv_m/dt + 2 pi f_c v_m = dv_b/dt
   StaticResponse velocity_response = {};  ///< its full scale is the fastest of the record
-  double velocity_low_pass = 0;     ///< first-order corner [Hz]
-  double velocity_zero = 0;         ///< reading at rest [m/s]
-  double clock_drift = 0;           ///< by which it runs ahead of friction, over time [1]
+  double velocity_low_pass = 0;           ///< first-order corner [Hz]
+  double velocity_zero = 0;               ///< reading at rest [m/s]
+  double clock_drift = 0;                 ///< by which it runs ahead of friction, over time [1]
   // Both.
   double friction_noise = 0;       ///< standard deviation on mu [1]
   double velocity_noise = 0;       ///< standard deviation on v_b [m/s]

@@ -71,9 +71,9 @@ struct ChannelDelay {
     const bool beyond = at < slip.time.front() ? at < reversal : at > reversal;
     const T time = beyond ? T(2 * reversal - when) : when;
     const auto next = std::upper_bound(slip.time.begin(), slip.time.end(), scalar_part(time));
-    const auto low = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
-        next - slip.time.begin() - 1, 0, static_cast<std::ptrdiff_t>(slip.time.size()) - 2));
-    const T inside = scalar_part(time) < slip.time.front() ? T(slip.time.front() + 0.0 * time)
+    const auto low = static_cast<std::size_t>(
+        std::clamp<std::ptrdiff_t>(next - slip.time.begin() - 1, 0, static_cast<std::ptrdiff_t>(slip.time.size()) - 2));
+    const T inside = scalar_part(time) < slip.time.front()  ? T(slip.time.front() + 0.0 * time)
                      : scalar_part(time) > slip.time.back() ? T(slip.time.back() + 0.0 * time)
                                                             : time;
     const T friction = between(slip, mu, low, inside);

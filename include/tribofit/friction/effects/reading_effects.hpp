@@ -156,8 +156,9 @@ struct FrictionCompression {
     return {.key = std::string(key),
             .statement = "the gain of the force sensor or its amplifier falls towards its limit",
             .equation = "reading = mu (1 - c (mu/mu_max)^2), or (1 - c mu/mu_max), mu_max the largest",
-            .source = "characteristic of an amplifier, textbook; in rigid stick friction is the force of the spring, "
-                      "k x, a straight line over the displacement of the block",
+            .source =
+                "characteristic of an amplifier, textbook; in rigid stick friction is the force of the spring, "
+                "k x, a straight line over the displacement of the block",
             .experiment = "load the sensor with weights: its reading then rises in a straight line, or does not",
             .parameters = {{.name = "c",
                             .description = "part of the gain that is lost at the largest friction",
@@ -173,8 +174,9 @@ struct FrictionCompression {
     const UndoneResponse& found = motion.friction_response;
     if (!found.any()) return {};
     return {.values = {{found.response.part, found.std_error}},
-            .reason = "in stick friction rises ever slower over the displacement of the block, the same in every cycle; "
-                      "it was corrected before the law was fitted"};
+            .reason =
+                "in stick friction rises ever slower over the displacement of the block, the same in every cycle; "
+                "it was corrected before the law was fitted"};
   }
 
   static StaticResponse friction_response(const double* p) {
