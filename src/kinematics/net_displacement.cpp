@@ -64,11 +64,6 @@ BlockPositions positions_in_plateaus(std::span<const double> time, std::span<con
   return out;
 }
 
-Estimate mean_velocity(std::span<const double> time, std::span<const double> velocity, const PlateauSearch& search) {
-  const BlockPositions positions = positions_in_plateaus(time, velocity, search);
-  return slope_of(positions.time, positions.position);
-}
-
 Estimate find_zero_drift(const Trace& trace, const PlateauSearch& search, const BlockPositions& positions,
                          double step) {
   if (search.plateaus.runs.size() < 2 * kFewestPeriods) return {};

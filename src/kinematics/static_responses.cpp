@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "limits.hpp"
@@ -211,15 +212,16 @@ UndoneResponse find_friction_response(const Trace& trace, const PlateauSearch& s
   const std::vector<StickPlateau>& runs = search.plateaus.runs;
   if (runs.size() < 2 * kFewestPeriods) return {};
   const std::size_t length = search.blocks.length;
-  BlockMeans friction = block_means(trace.friction, length, search.blocks.step);
-  if (!trace.load.empty()) {  // the spring pulls with a force
+  const BlockMeans friction = block_means(trace.friction, length, search.blocks.step);
+  std::vector<double> force = friction.mean;  // where friction was divided by a load that varies
+  if (!trace.load.empty()) {
     const BlockMeans load = block_means(trace.load, length, search.blocks.step);
     const double usual = mean_of(load.mean);
-    for (std::size_t b = 0; b < load.mean.size(); ++b) friction.mean[b] *= load.mean[b] / usual;
+    for (std::size_t b = 0; b < force.size(); ++b) force[b] *= load.mean[b] / usual;
   }
   const std::vector<double> position = running_sum(search.blocks.mean);
   const std::vector<double> turned = search.disc.mean.empty() ? std::vector<double>() : running_sum(search.disc.mean);
-  std::array<std::vector<Ramp>, 2> ramps;  // over the displacements of the block, and of the disc
+  std::array<std::vector<Ramp>, 3> ramps;  // over displacements of the block and of the disc; of the force
   const double largest = largest_of(friction.mean);
   for (const StickPlateau& run : runs) {
     const StickPlateau rest = at_rest(search, run);
@@ -232,15 +234,24 @@ UndoneResponse find_friction_response(const Trace& trace, const PlateauSearch& s
     ramps[0].push_back({part(friction.mean), part(position)});
     ramps[1].push_back({part(friction.mean), turned.empty() ? Eigen::ArrayXd(Eigen::ArrayXd::LinSpaced(n, 0, 1))
                                                             : Eigen::ArrayXd(part(turned))});
+    ramps[2].push_back({part(force), part(position)});
   }
   if (ramps[0].size() < 2 * kFewestPeriods) return {};
   const auto straighten = [&](Form form) -> Straightened {
     StaticResponse response{form, 0, largest};
-    const Bend first = bend_of(ramps[0], response), other = bend_of(ramps[1], response);
-    const double error = std::hypot(first.std_error, other.std_error), part = first.part;
-    const bool agrees = std::abs(first.halves[0] - first.halves[1]) < kHalvesAgree * part + kZeroErrors * error &&
-                        std::abs(part - other.part) < kHalvesAgree * part + kZeroErrors * error;
-    if (!agrees || part < std::max(kLeastBend, kSignificance * first.std_error)) return {};
+    const Bend first = bend_of(ramps[0], response);
+    const double part = first.part;
+    const auto agrees = [&](double other, double error) {
+      return std::abs(part - other) < kHalvesAgree * part + kZeroErrors * std::hypot(first.std_error, error);
+    };
+    for (const double half : first.halves) {
+      if (!agrees(half, std::numbers::sqrt2 * first.std_error)) return {};
+    }
+    for (std::size_t k = 1; k < ramps.size(); ++k) {
+      const Bend other = bend_of(ramps[k], response);
+      if (!agrees(other.part, other.std_error)) return {};
+    }
+    if (part < std::max(kLeastBend, kSignificance * first.std_error)) return {};
     const Bend straight = straightened(ramps[0], response);
     if (straight.std_error == 0 || response.part < kLeastBend || response.part > kMostCompressed) return {};
     return {{response, std::hypot(straight.std_error, kOtherCharacteristic * response.part)}, straight.left};

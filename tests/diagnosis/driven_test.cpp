@@ -83,9 +83,9 @@ TEST(Driven, StrokesWithDwellsOfARecordedPositionHaveOneLevel) {
   }
 }
 
-/// A late channel shows most at the reversals, where friction still has the sign of before.
-TEST(Driven, ADelayIsMeasuredThroughReversals) {
-  for (const double delay : {0.010, 0.020}) {
+/// At reversals friction changes its sign when v_r does, or as much later as its channel is.
+TEST(Driven, ADelayIsMeasuredAtReversals) {
+  for (const double delay : {0.010, 0.020, -0.008}) {
     std::mt19937_64 random(13);
     std::normal_distribution<double> noise(0, 0.003);
     const auto speed = [](double t) {
@@ -99,22 +99,7 @@ TEST(Driven, ADelayIsMeasuredThroughReversals) {
       trace.velocity.push_back(speed(t));
       trace.friction.push_back(law(speed(t - delay)) + noise(random));
     }
-    const TraceInput input = input_of(std::move(trace));
-    IdentifyOptions options;
-    options.laws = {Law(ExponentialLaw{})};
-    Identification without = prepare_trace(input, options);
-    fit_trace(options, without);
-    options.effects = {make_effect("channel-delay")};
-    Identification with = prepare_trace(input, options);
-    EXPECT_NEAR(with.motion.restick_delay, delay, 0.001);
-    fit_trace(options, with);
-    const FitParameter* found = parameter(with.fits.at(0), "delay");
-    ASSERT_NE(found, nullptr) << delay;
-    EXPECT_NEAR(found->value, delay, 4 * found->std_error + 0.0005) << delay;
-    // At each reversal a sample may be on either side of the jump.
-    EXPECT_LT(with.fits[0].error.rmse, 0.6 * without.fits.at(0).error.rmse) << delay;
-    const double off = std::abs(parameter(with.fits[0], "mu_k")->value - 0.22);
-    EXPECT_LT(off, 0.5 * std::abs(parameter(without.fits[0], "mu_k")->value - 0.22)) << delay;
+    EXPECT_NEAR(prepare_trace(input_of(std::move(trace))).motion.restick_delay, delay, 0.001);
   }
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -49,47 +48,13 @@ struct ChannelDelay {
 
   static double reading_delay(const double* p) { return p[0]; }
 
-  /// Where v_r passes through zero just before the first sample, or just behind the last one [s], by the straight line
-  /// through some samples there; NaN where it does not: the slip begins (ends) otherwise.
-  static double reversal_beside(const Slip& slip, bool first) {
-    constexpr std::size_t kSome = 4;
-    constexpr double kIntervals = 2;  // to the sample that is nearest
-    const std::size_t n = slip.time.size(), some = std::min(kSome, n - 1);
-    const std::size_t edge = first ? 0 : n - 1, inner = first ? some : n - 1 - some;
-    const double slope = (slip.velocity[inner] - slip.velocity[edge]) / (slip.time[inner] - slip.time[edge]);
-    const double away = slip.velocity[edge] / slope;  // of the edge from the reversal, in time
-    const double interval = std::abs(slip.time[inner] - slip.time[edge]) / static_cast<double>(some);
-    const bool is_near = (first ? away : -away) >= 0 && std::abs(away) < kIntervals * interval;
-    return is_near ? slip.time[edge] - away : std::numeric_limits<double>::quiet_NaN();
-  }
-
-  /// Friction at a time, and beyond a reversal what it is as long on this side of it, with the other sign: v_r passes
-  /// through zero in a straight line, and friction is as large both ways.
-  template <class T>
-  static T reading_at(const Slip& slip, const std::vector<T>& mu, const T& when, double reversal) {
-    const double at = scalar_part(when);
-    const bool beyond = at < slip.time.front() ? at < reversal : at > reversal;
-    const T time = beyond ? T(2 * reversal - when) : when;
-    const auto next = std::upper_bound(slip.time.begin(), slip.time.end(), scalar_part(time));
-    const auto low = static_cast<std::size_t>(
-        std::clamp<std::ptrdiff_t>(next - slip.time.begin() - 1, 0, static_cast<std::ptrdiff_t>(slip.time.size()) - 2));
-    const T inside = scalar_part(time) < slip.time.front()  ? T(slip.time.front() + 0.0 * time)
-                     : scalar_part(time) > slip.time.back() ? T(slip.time.back() + 0.0 * time)
-                                                            : time;
-    const T friction = between(slip, mu, low, inside);
-    return beyond ? T(-friction) : friction;
-  }
-
-  /// Before break-away friction is the spring's straight line; after re-stick it is what was read there; beyond a
-  /// reversal it has the other sign.
+  /// Before break-away friction is the spring's straight line; after re-stick it is what was read there.
   template <class T>
   void filter_reading(const T* p, const Slip& slip, const T& level, std::span<T> mu) const {
     const std::size_t n = mu.size();
     if (n < 2) return;
     const std::vector<T> true_mu(mu.begin(), mu.end());
     const double delay = scalar_part(p[0]);
-    const double before = slip.from_stick ? slip.time[0] : reversal_beside(slip, true);
-    const double behind = std::isfinite(slip.tail_friction) ? slip.time[n - 1] : reversal_beside(slip, false);
     std::size_t k = 0;  // true_mu[k] is the last at or before the time looked for
     for (std::size_t i = 0; i < n; ++i) {
       const double at = slip.time[i] - delay;
@@ -111,12 +76,10 @@ struct ChannelDelay {
         }
         continue;
       }
-      if (at > slip.time[n - 1] && std::isfinite(behind)) {
-        mu[i] = reading_at(slip, true_mu, late, behind);
-      } else if (at >= slip.time[0]) {
+      if (at >= slip.time[0]) {
         mu[i] = between(slip, true_mu, std::min(k, n - 2), late);
       } else if (!slip.from_stick) {
-        mu[i] = std::isfinite(before) ? reading_at(slip, true_mu, late, before) : true_mu[0];
+        mu[i] = true_mu[0];
       } else if (at > slip.break_away_time) {
         const T slope = (true_mu[0] - level) / (slip.time[0] - slip.break_away_time);
         mu[i] = level + slope * (late - slip.break_away_time);
