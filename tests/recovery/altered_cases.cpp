@@ -122,12 +122,6 @@ void add_limits(List& list) {
   for (const double part : {0.05, 0.1, 0.2})
     list.add_one(fmt::format("velocity: gain falls by {} %, with the speed", 100 * part), compressed_linearly(part),
                  {"velocity-compression", "velocity-gain", "radius-offset"});
-  for (const double part : {0.03, 0.08, -0.05})
-    list.add_one(fmt::format("velocity: gain {} % less against the disc", 100 * part), less_against_disc(part),
-                 compression);
-  for (const double part : {0.02, 0.05, 0.1, 0.2})
-    list.add_one(fmt::format("friction: gain falls by {} %", 100 * part), bent_friction(part),
-                 {"friction-compression"});
   for (const double limit : {1.0, 1.5, 3.0})
     list.add_one(fmt::format("velocity: saturates at {} of the fastest", limit), saturated(limit), compression);
 }
