@@ -88,14 +88,31 @@ void exclude(const std::vector<std::size_t>& rows, std::string_view what, FileRe
 void leave_out_unloaded_ends(FileRecord& recording) {
   const auto& load = recording[Channel::load];
   if (!recording.has(Channel::load) || recording.has(Channel::mu) || recording.is_points()) return;
+  const auto& friction = recording[recording.has(Channel::force) ? Channel::force : Channel::torque];
+  if (friction.size() != load.size()) return;
   double largest = kSmallestLoad;
   for (const double value : load) largest = std::max(largest, std::abs(value));
   const auto loaded = [&](double value) { return std::abs(value) > kLoadKnownTo * largest; };  // a zero may be off
   const auto first = std::ranges::find_if(load, loaded);
   if (first == load.end()) return;  // refused where friction is made
-  const auto last = std::find_if(load.rbegin(), load.rend(), loaded).base();
-  const auto begin = static_cast<std::size_t>(first - load.begin()),
-             end = static_cast<std::size_t>(last - load.begin());
+  auto begin = static_cast<std::size_t>(first - load.begin());
+  auto end = static_cast<std::size_t>(std::find_if(load.rbegin(), load.rend(), loaded).base() - load.begin());
+  const auto coefficient = [&](std::size_t from, std::size_t to) {
+    double forces = 0, loads = 0;
+    for (std::size_t i = from; i < to; ++i) forces += std::abs(friction[i]), loads += std::abs(load[i]);
+    return loads > 0 ? forces / loads : 0;
+  };
+  // A low step of a programme is no end without load: it keeps its side, and friction as its load makes it.
+  const double usual = coefficient(begin, end);
+  const auto is_step = [&](std::size_t from, std::size_t to) {
+    const auto on_side = [&](std::size_t i) { return load[i] * *first > 0; };
+    for (std::size_t i = from; i < to; ++i) {
+      if (!on_side(i)) return false;
+    }
+    return coefficient(from, to) > kFrictionOfLoad * usual;
+  };
+  if (is_step(0, begin)) begin = 0;
+  if (is_step(end, load.size())) end = load.size();
   const std::size_t without = load.size() - (end - begin);
   if (without == 0) return;
   recording.warnings.push_back(

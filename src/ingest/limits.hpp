@@ -53,6 +53,8 @@ inline constexpr std::size_t kIntervalsPerReturn = 10;
 inline constexpr double kSpeedKnownTo = 0.02;
 /// The same of a load: dead weights and springs are known less well, and a load channel has a zero of its own.
 inline constexpr double kLoadKnownTo = 0.1;
+/// Of the usual friction over load, from which on rows of a small load are a step of it, and not the zero of its cell.
+inline constexpr double kFrictionOfLoad = 0.5;
 /// Rounding of one condition in two places or two units (4 rpm, 0.418879 rad/s), and standard uncertainties of a
 /// declared one within which both are the same.
 inline constexpr double kConditionRounding = 1e-6, kDeclaredWithin = 2;

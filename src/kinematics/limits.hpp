@@ -248,7 +248,7 @@ inline constexpr double kHalvesAgree = 0.3, kHalfOfMean = 0.5;
 /// wrongly, over what the block would move on average.
 inline constexpr double kMostCompressed = 0.3, kPlateauHolds = 0.2;
 /// The least part of friction's gain that is lost at its largest: a spring is not straighter.
-inline constexpr double kLeastBend = 0.01;
+inline constexpr double kLeastCurvature = 0.01;
 /// Of the part, its standard error for not knowing the characteristic: of third order it may be or of any other.
 inline constexpr double kOtherCharacteristic = 0.1;
 

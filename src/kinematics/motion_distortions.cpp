@@ -25,7 +25,7 @@ void MotionStages::undo_distortions() {
     motion_.friction_low_pass = *options_.friction_low_pass;
     motion_.friction_filter_source = FilterSource::other_runs;
   }
-  if (!trace_.velocity_std_error.empty()) return;    // the velocity was made from another channel
+  if (!trace_.velocity_std_error.empty()) return compare_channels();  // the velocity was made from another channel
   if (samples_->velocity_is_slew_limited()) return;  // nothing of this brings back what an amplifier did not follow
   undo_zero_drift();
   find_zero();
@@ -137,6 +137,15 @@ void MotionStages::undo_low_pass() {
   motion_.notes.push_back(
       fmt::format("velocity: a low-pass at {}; corrected", frequency_text(1 / (2 * std::numbers::pi * low_pass_.tau))));
   find_plateau();
+}
+
+/// A velocity that was made is what its window left of it: its re-sticks say when they are, and no more.
+void MotionStages::compare_channels() {
+  if (!search_.sticks) return;
+  const std::vector<double> resticks =
+      find_low_pass(trace_.velocity, search_.plateaus.level, search_.noise, motion_.step, threads_).resticks;
+  clocks_ = find_clock_drift(trace_.friction, resticks);
+  motion_.restick_delay = clocks_.at_start * motion_.step;
 }
 
 void MotionStages::undo_clock_drift() {

@@ -53,6 +53,7 @@ class MotionStages {
   void undo_stated_low_pass();
   void undo_low_pass();
   void undo_clock_drift();
+  void compare_channels();
   void find_friction_filter();
   void undo_ripple_in_high_pass();
   std::size_t run_up() const;

@@ -8,9 +8,10 @@
 #include <numbers>
 #include <vector>
 
+#include "force_balance.hpp"
 #include "limits.hpp"
 #include "statistics/reductions.hpp"
-#include "tribofit/statistics/quantiles.hpp"
+#include "tribofit/statistics/polynomials.hpp"
 
 namespace tribofit::kinematics {
 namespace {
@@ -33,38 +34,34 @@ double mean_velocity_of(const std::vector<double>& velocity, const std::vector<S
     at.push_back(static_cast<double>(middle));
     where.push_back(position[middle]);
   }
-  const Eigen::Map<const Eigen::ArrayXd> x(at.data(), static_cast<Eigen::Index>(at.size())),
-      y(where.data(), static_cast<Eigen::Index>(where.size()));
-  return ((x - x.mean()) * y).sum() / (x - x.mean()).square().sum();
+  return fit_line(at, where).slope;
 }
 
-/// Mean square of friction that displacement, velocity and acceleration of the block leave, each cycle about its mean.
-/// Beside re-stick friction and acceleration jump, and blocks there are left out.
+/// Part of the squares of friction that displacement, velocity and acceleration of the block leave, each cycle about
+/// its mean. Beside re-stick friction and acceleration jump: the block with the jump and those whose difference reaches
+/// it are left out.
 double left_by_balance(const std::vector<double>& friction, const std::vector<double>& velocity,
                        const std::vector<StickPlateau>& runs) {
+  constexpr std::size_t size = 4, reach = 2;
   const std::vector<double> position = running_sum(velocity);
-  Eigen::Matrix4d sums = Eigen::Matrix4d::Zero();
-  constexpr std::size_t kBesideJump = 2;
-  double count = 0;
+  std::array<std::array<double, size>, size> sums{};
   for (std::size_t k = 0; k + 1 < runs.size(); ++k) {
-    Eigen::Matrix4d products = Eigen::Matrix4d::Zero();
-    Eigen::Vector4d sum = Eigen::Vector4d::Zero();
-    double n = 0;
-    for (std::size_t b = runs[k].begin + kBesideJump; b + kBesideJump < runs[k + 1].begin; ++b) {
-      const Eigen::Vector4d row(position[b], velocity[b], velocity[b + 1] - velocity[b - 1], friction[b]);
-      products += row * row.transpose();
-      sum += row;
-      ++n;
+    const std::size_t begin = runs[k].begin + reach, end = runs[k + 1].begin - reach;
+    const auto row_at = [&](std::size_t b) {
+      return std::array{position[b], velocity[b], velocity[b + 1] - velocity[b - 1], friction[b]};
+    };
+    std::array<double, size> mean{};
+    for (std::size_t b = begin; b < end; ++b) {
+      for (std::size_t i = 0; i < size; ++i) mean[i] += row_at(b)[i] / static_cast<double>(end - begin);
     }
-    if (n == 0) continue;
-    sums += products - sum * sum.transpose() / n;
-    count += n;
+    for (std::size_t b = begin; b < end; ++b) {
+      const auto row = row_at(b);
+      for (std::size_t i = 0; i < size; ++i) {
+        for (std::size_t j = i; j < size; ++j) sums[i][j] += (row[i] - mean[i]) * (row[j] - mean[j]);
+      }
+    }
   }
-  const Eigen::Vector3d scale = sums.diagonal().head<3>().cwiseSqrt().cwiseMax(std::numeric_limits<double>::min());
-  const Eigen::Matrix3d normal =
-      scale.cwiseInverse().asDiagonal() * sums.topLeftCorner<3, 3>() * scale.cwiseInverse().asDiagonal();
-  const Eigen::Vector3d right = sums.col(3).head<3>().cwiseQuotient(scale);
-  return (sums(3, 3) - normal.ldlt().solve(right).dot(right)) / std::max(1.0, count);
+  return part_left(sums, 0);
 }
 
 /// The response of one form with which the block goes nowhere; part: its slope over the mean velocity.
@@ -117,16 +114,16 @@ struct Ramp {
 };
 
 /// By how much the part of a response that was undone is too small, and what sticks disagree by.
-struct Bend {
+struct Curvature {
   double part = 0, std_error = 0;
   std::array<double, 2> halves = {};
   std::vector<double> left;  ///< squares of each stick
 };
 
 /// Each stick has a line of its own. What a response makes of it is taken from the line, not from noisy readings.
-Bend bend_of(const std::vector<Ramp>& ramps, const StaticResponse& undone) {
+Curvature curvature_of(const std::vector<Ramp>& ramps, const StaticResponse& undone) {
   std::vector<double> products, squares;
-  Bend out;
+  Curvature out;
   for (const Ramp& ramp : ramps) {
     const Eigen::ArrayXd x = ramp.base - ramp.base.mean();
     const auto without_line = [&](const Eigen::ArrayXd& y) {
@@ -134,9 +131,9 @@ Bend bend_of(const std::vector<Ramp>& ramps, const StaticResponse& undone) {
     };
     const Eigen::ArrayXd y = ramp.friction.unaryExpr([&](double mu) { return undone.undone(mu); });
     const Eigen::ArrayXd off = without_line(y), line = y - off;
-    const Eigen::ArrayXd bend = without_line(line.unaryExpr([&](double mu) { return undone.slope(mu); }));
-    products.push_back(-(off * bend).sum());
-    squares.push_back(bend.square().sum());
+    const Eigen::ArrayXd curve = without_line(line.unaryExpr([&](double mu) { return undone.slope(mu); }));
+    products.push_back(-(off * curve).sum());
+    squares.push_back(curve.square().sum());
     // As it was read: what is undone has more noise where the gain is less.
     out.left.push_back((off * line.unaryExpr([&](double mu) { return undone.gain(mu); })).square().sum());
   }
@@ -155,14 +152,13 @@ Bend bend_of(const std::vector<Ramp>& ramps, const StaticResponse& undone) {
 }
 
 /// The part of a form with which ramps are straight, and what is left then.
-Bend straightened(const std::vector<Ramp>& ramps, StaticResponse& response) {
+Curvature straightened(const std::vector<Ramp>& ramps, StaticResponse& response) {
   constexpr int kRounds = 8;
   const double read = response.full_scale;
-  Bend found;
+  Curvature found;
   for (int round = 0; round < kRounds; ++round) {
-    found = bend_of(ramps, response);
-    if (round == 0) response.part = found.part;
-    if (round > 0) response.part += found.part;
+    found = curvature_of(ramps, response);
+    response.part += found.part;
     if (std::abs(response.part) > 2 * kMostCompressed) return {};
     response.full_scale = read / (1 - response.part);
   }
@@ -239,7 +235,7 @@ UndoneResponse find_friction_response(const Trace& trace, const PlateauSearch& s
   if (ramps[0].size() < 2 * kFewestPeriods) return {};
   const auto straighten = [&](Form form) -> Straightened {
     StaticResponse response{form, 0, largest};
-    const Bend first = bend_of(ramps[0], response);
+    const Curvature first = curvature_of(ramps[0], response);
     const double part = first.part;
     const auto agrees = [&](double other, double error) {
       return std::abs(part - other) < kHalvesAgree * part + kZeroErrors * std::hypot(first.std_error, error);
@@ -248,12 +244,12 @@ UndoneResponse find_friction_response(const Trace& trace, const PlateauSearch& s
       if (!agrees(half, std::numbers::sqrt2 * first.std_error)) return {};
     }
     for (std::size_t k = 1; k < ramps.size(); ++k) {
-      const Bend other = bend_of(ramps[k], response);
+      const Curvature other = curvature_of(ramps[k], response);
       if (!agrees(other.part, other.std_error)) return {};
     }
-    if (part < std::max(kLeastBend, kSignificance * first.std_error)) return {};
-    const Bend straight = straightened(ramps[0], response);
-    if (straight.std_error == 0 || response.part < kLeastBend || response.part > kMostCompressed) return {};
+    if (part < std::max(kLeastCurvature, kSignificance * first.std_error)) return {};
+    const Curvature straight = straightened(ramps[0], response);
+    if (straight.std_error == 0 || response.part < kLeastCurvature || response.part > kMostCompressed) return {};
     return {{response, std::hypot(straight.std_error, kOtherCharacteristic * response.part)}, straight.left};
   };
   return better_of(straighten(Form::square), straighten(Form::linear));

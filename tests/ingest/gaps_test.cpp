@@ -81,6 +81,16 @@ TEST_F(Gaps, RowsBeforeTheLoadAndAfterItTakeNoPart) {
   }
 }
 
+/// A programme of loads may begin with a twentieth of the largest.
+TEST_F(Gaps, ALowStepOfTheLoadIsKept) {
+  std::string text = "time_s,force_N,load_N,v_r_mm_s\n";
+  for (std::size_t i = 0; i < 900; ++i) {
+    const double load = i < 300 ? 5 : i < 600 ? 100 : 4;
+    text += fmt::format("{:.3f},{},{},5\n", 1e-3 * static_cast<double>(i), 0.3 * load + (i % 2 == 0 ? 0.1 : 0), load);
+  }
+  EXPECT_EQ(read_trace(write(text)).size(), 900U);
+}
+
 /// Within a test they are a fault that is named.
 TEST_F(Gaps, ARowWithoutLoadWithinTheTestIsRefused) {
   expect_error(write("time_s,force_N,load_N,v_r_mm_s\n0,4,10,5\n0.1,4,10,5\n0.2,4,0,5\n0.3,4,10,5\n0.4,4,10,5\n"), {},

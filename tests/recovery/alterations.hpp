@@ -327,6 +327,7 @@ inline std::vector<Alteration> alterations() {
       {"clocks -200 ppm apart", clocks_apart(-200), "channel-delay", {{&Motion::clock_drift, -2e-4}}},
   };
   for (Alteration& low_pass : low_passes()) list.push_back(std::move(low_pass));
+  list.push_back({"friction: gain falls by 10 %", bent_friction(0.1), "friction-zero", {{part_of_friction, 0.1}}});
   return list;
 }
 

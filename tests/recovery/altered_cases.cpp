@@ -216,14 +216,26 @@ void add_other_recorders(List& list) {
       list.add_one(fmt::format("{}: drawn out over {} samples", name, count), drawn_out(channel, count));
 }
 
+void add_responses(List& list) {
+  for (const double part : {0.03, 0.08, -0.05})
+    list.add_one(fmt::format("velocity: gain {} % less against the disc", 100 * part), less_against_disc(part),
+                 {"velocity-compression"});
+  for (const double part : {0.02, 0.05, 0.1, 0.2})
+    list.add_one(fmt::format("friction: gain falls by {} %", 100 * part), bent_friction(part),
+                 {"friction-compression"});
+}
+
 }  // namespace
 
 std::vector<AlteredCase> altered_cases(const AlteredOptions& options) {
   List list(options);
-  constexpr std::pair<const char*, void (*)(List&)> kGroups[] = {
-      {"filters, means and slew limits", add_filters}, {"clipping, steps, gain that falls", add_limits},
-      {"zero, gain and clock", add_levels_and_clocks}, {"markers, spikes, frozen, stopped", add_faults},
-      {"loads that nobody recorded", add_loads},       {"other recorders", add_other_recorders}};
+  constexpr std::pair<const char*, void (*)(List&)> kGroups[] = {{"filters, means and slew limits", add_filters},
+                                                                 {"clipping, steps, gain that falls", add_limits},
+                                                                 {"zero, gain and clock", add_levels_and_clocks},
+                                                                 {"markers, spikes, frozen, stopped", add_faults},
+                                                                 {"loads that nobody recorded", add_loads},
+                                                                 {"other recorders", add_other_recorders},
+                                                                 {"responses", add_responses}};
   for (const auto& [group, add] : kGroups) {
     list.group = group;
     add(list);
