@@ -53,7 +53,8 @@ bool moves_between(const ChannelSamples& channel, std::size_t first, std::size_t
 }
 
 /// Stretches that the channel enters by a jump beyond its innovations and leaves by another, to go on where it was
-/// within few samples; or in which it is far beyond all others, at one value or for few samples.
+/// within few samples, whatever it reads in between; or in which it is far beyond all others, at one value or for few
+/// samples.
 std::vector<SampleSpan> find_outliers(const ChannelSamples& channel, const ChannelSamples& beside) {
   const std::span<const double> x = channel.x;
   const double far = std::max({channel.reach, kLeastOutlier * channel.range(), kStepsOfOutlier * channel.step});
@@ -63,18 +64,25 @@ std::vector<SampleSpan> find_outliers(const ChannelSamples& channel, const Chann
   for (std::size_t i = 0; i < x.size(); ++i) {
     const bool is_marker = channel.is_beyond(x[i]);
     if (!is_marker && (i == 0 || !(change(i) > far))) continue;
-    std::size_t end = i + 1, equal = 1;
+    // What leaves again at once has not been back.
+    const bool goes_on = !is_marker && !outliers.empty() && outliers.back().end + 1 == i && outliers.back().begin > 0;
+    const std::size_t begin = goes_on ? outliers.back().begin : i;
+    std::size_t end = goes_on ? i : i + 1, equal = 1;
     if (is_marker) {
       for (; end < x.size() && channel.is_beyond(x[end]); ++end) equal += x[end] == x[i] ? 1U : 0U;
     } else {
-      while (end < x.size() && end <= i + kWidestOutlier && change(end) < kQuietBeside * change(i)) ++end;
+      double away = 0;
+      const auto off = [&](std::size_t k) { return std::abs(x[k] - x[begin - 1]); };
+      for (std::size_t k = begin; k < end; ++k) away = std::max(away, off(k));
+      while (end < x.size() && end <= begin + kWidestOutlier && !(change(end) > far && off(end) < kQuietBeside * away))
+        away = std::max(away, off(end++));
     }
-    const bool repeats = is_marker && equal == end - i, is_short = end - i <= kWidestOutlier && end < x.size();
-    const bool was_quiet = is_marker || i == 1 || change(i - 1) < kQuietBeside * change(i) || end == i + 1;
-    const bool returns = is_marker || (is_short && std::abs(x[end] - x[i - 1]) < kQuietBeside * change(i));
-    const std::size_t before = i - std::min<std::size_t>(i, 2), after = std::min(x.size(), end + 2);
-    if (repeats || (is_short && was_quiet && returns && !moves_between(beside, before, after))) {
-      outliers.push_back({i, end});
+    const bool repeats = is_marker && equal == end - i, is_short = end - begin <= kWidestOutlier && end < x.size();
+    const bool was_quiet = is_marker || goes_on || i == 1 || end == i + 1 || change(i - 1) < kQuietBeside * change(i);
+    const std::size_t before = begin - std::min<std::size_t>(begin, 2), after = std::min(x.size(), end + 2);
+    if (repeats || (is_short && was_quiet && !moves_between(beside, before, after))) {
+      if (goes_on) outliers.pop_back();
+      outliers.push_back({begin, end});
       i = end;
     } else if (is_marker) {
       i = end;
