@@ -28,50 +28,19 @@ Level::Level(const Observations& given)
 
 namespace {
 
-/// Value at the middle of a parabola of least squares through 2 half + 1 values.
-double parabola_at(std::span<const double> x, std::size_t middle, std::size_t half) {
-  const auto width = static_cast<double>(2 * half + 1), squares = width * width;
-  double sum = 0;
-  for (std::size_t k = middle - half; k <= middle + half; ++k) {
-    const double from = static_cast<double>(k) - static_cast<double>(middle);
-    sum += 3 * (3 * squares - 7 - 20 * from * from) / (4 * width * (squares - 4)) * x[k];
-  }
-  return sum;
-}
-
-/// A channel smoothed within each slip; at the ends of a slip it stays as it is.
-std::vector<double> smoothed(const Observations& o, const std::vector<double>& channel) {
-  std::vector<double> out = channel;
-  for (const auto& slip : o.slips) {
-    const std::size_t n = slip.end - slip.begin;
-    if (n < 3) continue;
-    const double step = (o.time[slip.end - 1] - o.time[slip.begin]) / static_cast<double>(n - 1);
-    const auto widest = static_cast<std::size_t>(0.5 * limits::kSmoothedPart * o.scales.slip_time / step);
-    const std::span<const double> own(channel.data() + slip.begin, n);
-    for (std::size_t i = 1; i + 1 < n; ++i) {
-      const std::size_t half = std::min({widest, i, n - 1 - i});
-      if (half > 0) out[slip.begin + i] = parabola_at(own, i, half);
-    }
-  }
-  return out;
-}
-
-/// v_r in the middle of the stick before a slip, less its trend. Empty where that is too short.
+/// The noise of v_r in the middle of the stick before a slip, smoothed as in the slip. Empty where that is too short.
 std::vector<double> noise_of_stick(const Record& record, const Observations::SlipObservation& slip) {
   const SampleRange& stick = record.segmentation->cycles[slip.segment].stick;
   const auto part = static_cast<std::size_t>(limits::kEndOfStick * static_cast<double>(stick.size()));
   if (!slip.from_stick || part == 0) return {};
-  const std::span<const double> v(record.motion->relative_velocity);
-  const std::span<const double> middle = v.subspan(stick.begin + part, stick.size() - 2 * part);
-  const StraightLine line = fit_line(middle);
-  std::vector<double> noise(middle.begin(), middle.end());
+  std::vector<double> noise = slip_motion(*record.motion, {stick.begin + part, stick.end - part}).velocity;
+  const StraightLine line = fit_line(noise);
   for (std::size_t i = 0; i < noise.size(); ++i) noise[i] -= line.at(static_cast<double>(i));
   return noise;
 }
 
-}  // namespace
-
-std::vector<double> quieten_velocity(std::span<const Record> records, Observations& observations) {
+/// The noise that is left of v_r at each value of the observations; 0 where it is not known [m/s].
+std::vector<double> left_of_velocity_noise(std::span<const Record> records, const Observations& observations) {
   std::vector<double> noise(observations.size(), 0.0);
   const std::size_t each = observations.samples_per_value;
   for (const auto& slip : observations.slips) {
@@ -83,9 +52,10 @@ std::vector<double> quieten_velocity(std::span<const Record> records, Observatio
         noise[i] += of_stick[sample % of_stick.size()] / static_cast<double>(each);
     }
   }
-  observations.velocity = smoothed(observations, observations.velocity);
-  return smoothed(observations, noise);
+  return noise;
 }
+
+}  // namespace
 
 double squares_of_velocity_noise(const Level& level, const Trial& trial) {
   const Observations& o = level.observations;
@@ -127,9 +97,8 @@ const Level& DiagnosisContext::finest() const {
   std::call_once(finest_->made, [&] {
     const std::size_t most = finest_values(count_cycles(records));
     finest_->observations = observe_all(records, fine.observations.noise, all_channels(records), most, noise);
-    std::vector<double> left = quieten_velocity(records, *finest_->observations);
     finest_->level.emplace(*finest_->observations);
-    finest_->level->velocity_noise = std::move(left);
+    finest_->level->velocity_noise = left_of_velocity_noise(records, *finest_->observations);
     finest_->level->known = fine.known;
   });
   return *finest_->level;

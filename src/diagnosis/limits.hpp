@@ -24,8 +24,6 @@ inline constexpr std::size_t kFewestFine = 80,
 /// over single samples the lag is clearly ahead.
 inline constexpr std::size_t kFinestValues = 400000;
 inline constexpr double kContenderPart = 0.9;
-/// Of the time of a slip, over which v_r is smoothed there: what is faster is noise, but where the block breaks away.
-inline constexpr double kSmoothedPart = 0.03;
 /// Part of a stick at either end of which the noise of v_r is not taken: the block rings there, or breaks away.
 inline constexpr double kEndOfStick = 1.0 / 6;
 inline constexpr std::size_t kCoarseValues = 5000;                  ///< enough to see which candidate is hopeless

@@ -56,7 +56,7 @@ struct Level {
   double values = 0;                        ///< rows of friction, over which the noise of a row is taken
   double samples = 0;                       ///< behind them
   std::vector<GivenParameter> known = {};   ///< bounds that the user gave
-  std::vector<double> velocity_noise = {};  ///< of each value, where it is known, see quieten_velocity() [m/s]
+  std::vector<double> velocity_noise = {};  ///< that is left of each value of v_r [m/s]; empty: not looked at
 
   explicit Level(const Observations& given);
   /// Of a model's parameters: those of the catalogue on the scale of the record, or the user's.
@@ -155,13 +155,8 @@ Trial try_with(const DiagnosisContext& context, const Level& level, const Trial&
 /// Model, parameters and whitening of a trial without one of its effects; nothing is fitted anew.
 Trial without_effect(const Trial& full, std::string_view key);
 
-/// Smooths v_r, parabolas over a part of the time of a slip (narrower at its ends), and returns the noise that is left
-/// of it at every value: that of the stick before each slip, smoothed alike; zero where there is none. Linear in
-/// values.
-std::vector<double> quieten_velocity(std::span<const Record> records, Observations& observations);
-
-/// Squares that this noise adds to those of a trial. What it does to friction at single values is an error of every
-/// model but those that smooth what they predict, as a filter does: they would be ahead by it.
+/// Squares that the noise left of v_r adds to those of a trial. What it does to friction at single values is an error
+/// of every model but those that smooth what they predict, as a filter does: they would be ahead by it.
 double squares_of_velocity_noise(const Level& level, const Trial& trial);
 
 /// A start of a wave (an effect with an amplitude first and one phase) with the amplitude and phase that fit there.

@@ -42,13 +42,11 @@ Slip FullRecord::slip(const Observations::SlipObservation& range, Made& made) co
   const Channel& channel = channels_[range.record];
   Slip slip = observations_.slip(range);
   slip.time = part(motion.time);
-  slip.velocity = part(motion.relative_velocity);
+  made.motion = slip_motion(motion, range.samples);
+  slip.velocity = made.motion.velocity;
   slip.velocity_variance = {};
   slip.acceleration = {};
-  if (needs_.acceleration) {
-    made.acceleration = slip_acceleration(motion, range.samples);
-    slip.acceleration = made.acceleration;
-  }
+  if (needs_.acceleration) slip.acceleration = made.motion.acceleration;
   // What the observations lack the model was fitted without, though this record may have it.
   const auto as_fitted = [&](const std::vector<double>& fitted, const std::vector<double>& recorded) {
     return fitted.empty() ? std::span<const double>() : part(recorded);

@@ -15,7 +15,8 @@ class FullRecord {
   FullRecord(std::span<const Record> records, const Observations& observations, const Channels& needs);
   /// What of a slip stands in no record.
   struct Made {
-    std::vector<double> acceleration, load;
+    SlipMotion motion;
+    std::vector<double> load;
   };
   /// Valid until `made` is given to the next call.
   Slip slip(const Observations::SlipObservation& range, Made& made) const;

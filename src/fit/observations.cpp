@@ -27,7 +27,7 @@ std::size_t median_size(const std::vector<Observations::SlipObservation>& slips)
   return sizes.empty() ? 0 : static_cast<std::size_t>(std::round(median(std::move(sizes))));
 }
 
-/// Means of `channel` over each value of the observations.
+/// Means of channels over each value of the observations.
 class Reducer {
  public:
   Reducer(const Motion& motion, const std::vector<Observations::SlipObservation>& slips, std::size_t per_value)
@@ -42,27 +42,33 @@ class Reducer {
     }
   }
 
+  /// Appends the means of a slip, of which each sample has a value.
+  void append(const Observations::SlipObservation& slip, std::span<const double> values,
+              std::vector<double>& out) const {
+    if (per_value_ == 1) {
+      out.insert(out.end(), values.begin(), values.end());
+      return;
+    }
+    for (std::size_t begin = 0; begin < values.size(); begin += per_value_) {
+      const std::size_t end = std::min(begin + per_value_, values.size());
+      double sum = 0, good = 0, count = 0;
+      for (std::size_t i = begin; i < end; ++i) {
+        sum += values[i];
+        if (motion_.has_fault(slip.samples.begin + i, SampleFault::any)) continue;
+        good += values[i];
+        ++count;
+      }
+      out.push_back(count > 0 ? good / count : sum / static_cast<double>(end - begin));
+    }
+  }
+
   std::vector<double> means(const std::vector<double>& channel) const {
     std::vector<double> out;
     if (channel.empty()) return out;
     std::size_t samples = 0;
     for (const auto& slip : slips_) samples += slip.samples.size();
     out.reserve(samples / per_value_ + slips_.size());
-    if (per_value_ == 1) {
-      const auto at = [&](std::size_t i) { return channel.begin() + static_cast<std::ptrdiff_t>(i); };
-      for (const auto& slip : slips_) out.insert(out.end(), at(slip.samples.begin), at(slip.samples.end));
-      return out;
-    }
-    each([&](std::size_t begin, std::size_t end) {
-      double sum = 0, good = 0, count = 0;
-      for (std::size_t i = begin; i < end; ++i) {
-        sum += channel[i];
-        if (motion_.has_fault(i, SampleFault::any)) continue;
-        good += channel[i];
-        ++count;
-      }
-      out.push_back(count > 0 ? good / count : sum / static_cast<double>(end - begin));
-    });
+    for (const auto& slip : slips_) append(slip, part_of(channel, slip.samples.begin, slip.samples.end), out);
     return out;
   }
 
@@ -149,29 +155,21 @@ double mean_of(const std::vector<double>& x, double otherwise) {
   return sum / static_cast<double>(x.size());
 }
 
-/// Variance of v_r within each value. Sensor noise is part of this spread; it is far below what the motion does within
-/// a value.
-void add_velocity_variance(const Motion& motion, const Reducer& reduce, Observations& out) {
-  std::size_t value = 0;
-  out.velocity_variance.reserve(out.velocity.size());
-  reduce.each([&](std::size_t begin, std::size_t end) {
-    const double mean = out.velocity[value++];
-    double squares = 0;
-    for (std::size_t i = begin; i < end; ++i) squares += std::pow(motion.relative_velocity[i] - mean, 2);
-    for (std::size_t i = begin; i < end && !motion.velocity_variance.empty(); ++i)
-      squares += motion.velocity_variance[i];
-    out.velocity_variance.push_back(squares / static_cast<double>(end - begin));
-  });
-}
-
-void add_acceleration(const Motion& motion, Observations& out) {
+/// How the block moves, each slip smoothed as its noise demands, and the variance of v_r within each value.
+void add_motion(const Motion& motion, bool needs_acceleration, const Reducer& reduce, Observations& out) {
+  const std::size_t each = out.samples_per_value;
+  const bool needs_variance = each > 1 || !motion.velocity_variance.empty();
   for (const auto& slip : out.slips) {
-    const std::vector<double> full = slip_acceleration(motion, slip.samples);
-    for (std::size_t i = 0; i < full.size(); i += out.samples_per_value) {
-      const std::size_t end = std::min(i + out.samples_per_value, full.size());
-      const double sum = std::accumulate(full.begin() + static_cast<std::ptrdiff_t>(i),
-                                         full.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
-      out.acceleration.push_back(sum / static_cast<double>(end - i));
+    const SlipMotion moves = slip_motion(motion, slip.samples);
+    reduce.append(slip, moves.velocity, out.velocity);
+    if (needs_acceleration) reduce.append(slip, moves.acceleration, out.acceleration);
+    for (std::size_t i = 0, value = slip.begin; needs_variance && i < moves.velocity.size(); i += each, ++value) {
+      const std::size_t end = std::min(i + each, moves.velocity.size());
+      double squares = 0;
+      for (std::size_t k = i; k < end; ++k) squares += std::pow(moves.velocity[k] - out.velocity[value], 2);
+      for (std::size_t k = i; k < end && !motion.velocity_variance.empty(); ++k)
+        squares += motion.velocity_variance[slip.samples.begin + k];
+      out.velocity_variance.push_back(squares / static_cast<double>(end - i));
     }
   }
 }
@@ -193,7 +191,6 @@ void add_strokes(const Motion& motion, const Segmentation& segmentation, const R
 /// The channels that effects need, as far as the record has them.
 void add_channels(const Motion& motion, const Segmentation& segmentation, const Channels& needs, const Reducer& reduce,
                   Observations& out) {
-  if (needs.acceleration) add_acceleration(motion, out);
   if (needs.angle) out.angle = reduce.means(disc_angle(motion));
   if (needs.distance) out.distance = reduce.means(sliding_distance(motion));
   if (needs.reversal_distance) add_strokes(motion, segmentation, reduce, out);
@@ -331,7 +328,7 @@ Observations observe_motion(const Motion& motion, const Segmentation& segmentati
   stop_point();
   const Reducer reduce(motion, out.slips, out.samples_per_value);
   out.time = reduce.means(motion.time);
-  out.velocity = reduce.means(motion.relative_velocity);
+  add_motion(motion, needs.acceleration, reduce, out);
   out.friction = reduce.means(motion.friction);
   out.weight.reserve(values);
   out.root_weight.reserve(values);
@@ -342,7 +339,6 @@ Observations observe_motion(const Motion& motion, const Segmentation& segmentati
     out.root_weight.push_back(std::sqrt(out.weight.back()));
   });
   weigh_points(motion, out);
-  if (out.samples_per_value > 1 || !motion.velocity_variance.empty()) add_velocity_variance(motion, reduce, out);
   stop_point();
   add_channels(motion, segmentation, needs, reduce, out);
   stop_point();

@@ -51,10 +51,13 @@ void fill_stick_times(std::vector<Observations::SlipObservation>& slips, const s
   }
 }
 
-/// Leaves out the last samples of a slip that coloured noise kept above the threshold of stick: there friction is the
-/// spring's, far from the law's. A slip ends so steeply that hardly one sample of it is as slow as that.
+/// Leaves out the last samples of a slip at which friction is the spring's, far from the law's: those that coloured
+/// noise kept above the threshold of stick (a slip ends so steeply that hardly one sample of it is as slow as that),
+/// and those that a velocity which is late shows after friction has jumped.
 void trim_rest(const Motion& motion, SampleRange& samples) {
   const std::size_t least = samples.begin + samples.size() / 2;
+  const double early = std::ceil(-motion.restick_delay / motion.step - 0.5);  // sampling makes half of one
+  if (early > 0) samples.end = std::max(least, samples.end - std::min(samples.end, static_cast<std::size_t>(early)));
   while (samples.end > least &&
          std::abs(motion.relative_velocity[samples.end - 1]) < kSlowEnd * motion.velocity_noise) {
     --samples.end;

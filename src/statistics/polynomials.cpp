@@ -123,14 +123,16 @@ double peak_between(double before, double middle, double after) {
   return curvature < 0 ? std::clamp(0.5 * (before - after) / curvature, -0.5, 0.5) : 0;
 }
 
-std::vector<double> slope_weights(std::size_t left, std::size_t right) {
+ParabolaWeights parabola_weights(std::size_t left, std::size_t right) {
   Parabola through;
   through.count = static_cast<double>(left + right + 1);
   const double place = static_cast<double>(left) - through.centre();
-  std::vector<double> weights;
+  ParabolaWeights weights;
   for (std::size_t i = 0; i <= left + right; ++i) {
     const double x = static_cast<double>(i) - through.centre();
-    weights.push_back(x / through.line_norm() + 2 * place * (x * x - through.shift()) / through.curvature_norm());
+    const double slope = x / through.line_norm(), curvature = (x * x - through.shift()) / through.curvature_norm();
+    weights.value.push_back(1 / through.count + place * slope + (place * place - through.shift()) * curvature);
+    weights.slope.push_back(slope + 2 * place * curvature);
   }
   return weights;
 }

@@ -163,7 +163,7 @@ TEST(FrozenFit, AMassBelowTheSensorSeesTheLoadAsRecorded) {
   std::size_t number = 0;
   for (Cycle& cycle : record.segmentation.cycles) {
     const double load = number++ % 2 == 0 ? 20 : 80;
-    const std::vector<double> a = slip_acceleration(record.motion, cycle.slip);
+    const std::vector<double> a = slip_motion(record.motion, cycle.slip).acceleration;
     for (std::size_t i = cycle.stick.begin; i < cycle.slip.end; ++i) {
       record.motion.load.push_back(load);
       if (i >= cycle.slip.begin) record.motion.friction[i] -= kMass * a[i - cycle.slip.begin] / load;
@@ -177,7 +177,7 @@ TEST(FrozenFit, AMassBelowTheSensorSeesTheLoadAsRecorded) {
 
 /// A drive that turns within a dozen samples, measured without noise and with noise: what is there is not flattened,
 /// and where noise hides it no window is too short.
-TEST(SlipAcceleration, IsAsSmoothAsTheNoiseDemands) {
+TEST(SlipMotion, IsAsSmoothAsTheNoiseDemands) {
   const auto error_of = [](double noise) {
     std::mt19937_64 generator(3);
     std::normal_distribution<double> normal(0, noise);
@@ -189,7 +189,7 @@ TEST(SlipAcceleration, IsAsSmoothAsTheNoiseDemands) {
       motion.time.push_back(1e-3 * i);
       motion.relative_velocity.push_back(0.2 - 0.1 * std::sin(w * 1e-3 * i) + normal(generator));
     }
-    const std::vector<double> a = slip_acceleration(motion, {0, 4000});
+    const std::vector<double> a = slip_motion(motion, {0, 4000}).acceleration;
     double squares = 0;
     for (std::size_t i = 20; i + 20 < a.size(); ++i)
       squares += std::pow(a[i] - 0.1 * w * std::cos(w * motion.time[i]), 2) / 3960;

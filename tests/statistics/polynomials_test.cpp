@@ -124,18 +124,24 @@ TEST(Peak, OfAParabolaIsItsVertex) {
   EXPECT_EQ(peak_between(1, 1, 1), 0);
 }
 
-// Table of Savitzky and Golay 1964: first derivative of a quadratic over five points, (-2 -1 0 1 2)/10.
-TEST(SavitzkyGolay, WeightsOfTheTable) {
-  const std::vector<double> weights = slope_weights(2, 2);
-  for (std::size_t k = 0; k < 5; ++k) EXPECT_NEAR(weights[k], (static_cast<double>(k) - 2) / 10, 1e-14);
+// Tables of Savitzky and Golay 1964, a quadratic over five points: (-3 12 17 12 -3)/35, and of its first derivative
+// (-2 -1 0 1 2)/10.
+TEST(SavitzkyGolay, WeightsOfTheTables) {
+  const ParabolaWeights weights = parabola_weights(2, 2);
+  const std::vector<double> values = {-3, 12, 17, 12, -3};
+  for (std::size_t k = 0; k < 5; ++k) {
+    EXPECT_NEAR(weights.value[k], values[k] / 35, 1e-14);
+    EXPECT_NEAR(weights.slope[k], (static_cast<double>(k) - 2) / 10, 1e-14);
+  }
 }
 
-TEST(SavitzkyGolay, AnyWindowGivesTheSlopeOfAParabola) {
+TEST(SavitzkyGolay, AnyWindowGivesAParabola) {
   const std::vector<double> y = samples_of(9, 2, -1, 0.5);
   for (std::size_t left = 0; left <= 8; ++left) {
-    const std::vector<double> weights = slope_weights(left, 8 - left);
-    double slope = 0;
-    for (std::size_t k = 0; k < 9; ++k) slope += weights[k] * y[k];
+    const ParabolaWeights weights = parabola_weights(left, 8 - left);
+    double value = 0, slope = 0;
+    for (std::size_t k = 0; k < 9; ++k) value += weights.value[k] * y[k], slope += weights.slope[k] * y[k];
+    EXPECT_NEAR(value, y[left], 1e-11);
     EXPECT_NEAR(slope, -1 + static_cast<double>(left), 1e-11);
   }
 }

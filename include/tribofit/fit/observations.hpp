@@ -161,9 +161,16 @@ Observations join(std::vector<Observations> records);
 /// one record belongs together with block k of the others.
 std::vector<std::size_t> blocks_of(const Observations& observations, std::size_t count);
 
-/// Block acceleration [m/s^2] at the samples of a slip: Savitzky-Golay slope (quadratic, over a thirtieth of the slip,
-/// 3 to 21 samples, fewer where the wider window would flatten what the velocity does above its noise; O. V. Lepski,
-/// Theory Probab. Appl. 35 (1991) 454) whose window stops at re-stick, where the acceleration jumps.
-std::vector<double> slip_acceleration(const Motion& motion, const SampleRange& samples);
+/// How the block moves in a slip, a value for each of its samples.
+struct SlipMotion {
+  std::vector<double> velocity;      ///< v_r [m/s]
+  std::vector<double> acceleration;  ///< of the block [m/s^2]
+};
+
+/// Savitzky-Golay parabolas (over a thirtieth of the slip, 3 to 21 samples, fewer where the wider window would flatten
+/// what the velocity does above its noise; O. V. Lepski, Theory Probab. Appl. 35 (1991) 454), whose window stops at
+/// re-stick, where the acceleration jumps. A law is evaluated at a velocity without its noise: the noise of a regressor
+/// biases what is fitted to it (W. A. Fuller, Measurement Error Models, 1987).
+SlipMotion slip_motion(const Motion& motion, const SampleRange& samples);
 
 }  // namespace tribofit

@@ -84,10 +84,14 @@ struct CorrelatedNoise {
 /// and less correlated, by what an autoregression of first order lets expect.
 CorrelatedNoise noise_about_parabolas(const Remainder& all, double stretches);
 
-/// Weights of the samples of a window whose sum of products is the slope of their parabola of least squares at one of
-/// them, `left` samples behind the first and `right` before the last [1/sample] (A. Savitzky, M. J. E. Golay, Anal.
-/// Chem. 36 (1964) 1627, doi:10.1021/ac60214a047). left + right >= 2.
-std::vector<double> slope_weights(std::size_t left, std::size_t right);
+/// Weights of the samples of a window whose sums of products are the value and the slope [1/sample] of their parabola
+/// of least squares at one of them (A. Savitzky, M. J. E. Golay, Anal. Chem. 36 (1964) 1627, doi:10.1021/ac60214a047).
+struct ParabolaWeights {
+  std::vector<double> value, slope;
+};
+
+/// At the sample with `left` others before it and `right` behind; left + right >= 2.
+ParabolaWeights parabola_weights(std::size_t left, std::size_t right);
 
 /// Slope of a parabola through 2*half_window+1 samples about each sample, per unit of `step`, the distance of samples.
 /// The ends take it from the first and last full window; a signal that is shorter than one takes the longest that fits.

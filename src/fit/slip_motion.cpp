@@ -63,32 +63,35 @@ std::size_t half_window(const Motion& motion, const SampleRange& samples) {
 
 }  // namespace
 
-std::vector<double> slip_acceleration(const Motion& motion, const SampleRange& samples) {
-  if (!motion.acceleration.empty()) {
-    const std::span<const double> own = part_of(motion.acceleration, samples.begin, samples.end);
-    return {own.begin(), own.end()};
-  }
+SlipMotion slip_motion(const Motion& motion, const SampleRange& samples) {
+  const auto own = [&](const std::vector<double>& channel) {
+    const std::span<const double> part = part_of(channel, samples.begin, samples.end);
+    return std::vector<double>(part.begin(), part.end());
+  };
+  SlipMotion moves{own(motion.relative_velocity), own(motion.acceleration)};
+  if (!moves.acceleration.empty()) return moves;
+  moves.acceleration.assign(samples.size(), 0.0);
   const std::size_t half = half_window(motion, samples);
   const std::size_t begin = samples.begin - std::min(samples.begin, 2 * half);
-  const std::size_t length = samples.end - begin;
-  std::vector<double> acceleration(samples.size(), 0.0);
-  if (length < 3) return acceleration;
-  std::vector<double> weights;
+  if (samples.end - begin < 3) return moves;
+  ParabolaWeights weights;
   std::size_t last_left = 0, last_right = 0;
   for (std::size_t i = samples.begin; i < samples.end; ++i) {
     const std::size_t right = std::min(half, samples.end - 1 - i);
     const std::size_t left = std::min(i - begin, 2 * half - right);
-    if (weights.empty() || left != last_left || right != last_right) weights = slope_weights(left, right);
+    if (weights.value.empty() || left != last_left || right != last_right) weights = parabola_weights(left, right);
     last_left = left;
     last_right = right;
-    double slope = 0;
+    double value = 0, slope = 0;
     for (std::size_t k = 0; k <= left + right; ++k) {
       const std::size_t at = i - left + k;
-      slope += weights[k] * (motion.disc_velocity_at(at) - motion.relative_velocity[at]);
+      value += weights.value[k] * motion.relative_velocity[at];
+      slope += weights.slope[k] * (motion.disc_velocity_at(at) - motion.relative_velocity[at]);
     }
-    acceleration[i - samples.begin] = slope / motion.step;
+    moves.velocity[i - samples.begin] = value;
+    moves.acceleration[i - samples.begin] = slope / motion.step;
   }
-  return acceleration;
+  return moves;
 }
 
 }  // namespace tribofit
