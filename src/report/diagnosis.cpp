@@ -252,7 +252,7 @@ ReportSection law_section(const DiagnosedTraces& result, const Motion& motion) {
     }
   }
   if (!beside.empty()) section.heading("Found beside it");
-  section.add(value_table("parameter", shown_values(beside, motion)));
+  section.add(value_table("parameter", results_of(beside, motion)));
   for (const std::string& equation : equations) section.plain(equation);
   return section;
 }

@@ -23,32 +23,61 @@ double shown(const FitParameter& parameter, double value_in_si) {
 }
 
 std::string full_name(const FitParameter& p) {
-  return p.effect.empty() ? p.parameter.name : p.effect + "." + p.parameter.name;
+  return full_name(p.parameter.name, p.effect);
 }
 
 std::string curve_name(const Fit& fit) {
   return fit.model.name() + (fit.protocol == Protocol::published ? ", " + protocol_text(fit.protocol) : "");
 }
 
-std::string limits_text(const FitParameter& p) {
-  const double lower = shown(p, p.profile_lower95), upper = shown(p, p.profile_upper95);
-  const double reach = 1e-6 * (p.parameter.upper - p.parameter.lower);
-  const bool above = lower > p.parameter.lower + reach, below = upper < p.parameter.upper - reach;
+ResultParameter result_of(const FitParameter& p, const Motion& motion) {
+  const auto in_unit = [&](double si) { return shown(p, si); };
+  ResultParameter out;
+  out.name = p.parameter.name;
+  out.unit = shown_unit(p, motion);
+  out.effect = p.effect;
+  out.value = in_unit(p.value);
+  out.std_error = in_unit(p.std_error);
+  out.systematic = in_unit(p.systematic);
+  out.lower95 = in_unit(p.lower95);
+  out.upper95 = in_unit(p.upper95);
+  out.profile_lower95 = in_unit(p.profile_lower95);
+  out.profile_upper95 = in_unit(p.profile_upper95);
+  if (p.range) {
+    out.range_lower = in_unit(p.range->lower);
+    out.range_upper = in_unit(p.range->upper);
+  }
+  out.start = in_unit(p.start);
+  out.lower = p.parameter.lower;
+  out.upper = p.parameter.upper;
+  out.at_bound = p.at_bound;
+  out.determined = p.determined;
+  return out;
+}
+
+std::vector<ResultParameter> results_of(std::span<const FitParameter> parameters, const Motion& motion) {
+  std::vector<ResultParameter> results;
+  for (const FitParameter& p : parameters) results.push_back(result_of(p, motion));
+  return results;
+}
+
+std::string limits_text(const ResultParameter& p) {
+  const double lower = p.profile_lower95, upper = p.profile_upper95, reach = 1e-6 * (p.upper - p.lower);
+  const bool above = lower > p.lower + reach, below = upper < p.upper - reach;
   if (above && below) return fmt::format("{} to {}", significant(lower, 2), significant(upper, 2));
   if (above) return "at least " + significant(lower, 2);
   return below ? "at most " + significant(upper, 2) : "";
 }
 
 std::string value_text(const FitParameter& p, const Motion& motion) {
-  const std::string unit = unit_behind(shown_unit(p, motion)), limits = limits_text(p);
+  const std::string unit = unit_behind(shown_unit(p, motion)), limits = limits_text(result_of(p, motion));
   if (p.determined) return with_error(shown(p, p.value), shown(p, p.std_error)) + unit;
   return "not determined" + (limits.empty() ? "" : fmt::format(" ({}{})", limits, unit));
 }
 
-int places_of(const FitParameter& p) {
-  const double error = shown(p, p.std_error);
-  if (std::isfinite(error) && error > 0) return places_for(error);
-  const double value = std::abs(shown(p, p.value));
+int places_of(const ResultParameter& p) {
+  if (std::isfinite(p.std_error) && p.std_error > 0) return places_for(p.std_error);
+  const double value = std::abs(p.value);
   return value > 0 && std::isfinite(value) ? std::max(0, 4 - static_cast<int>(std::floor(std::log10(value)))) : 4;
 }
 

@@ -20,19 +20,19 @@ std::string chance(double p_value) {
 }
 
 ReportTable parameter_table_of(const RateStateFit& fit, const Motion& motion) {
-  std::vector<ShownValue> values = shown_values(fit.parameters, motion);
+  std::vector<ResultParameter> values = results_of(fit.parameters, motion);
   std::vector<std::string> remarks;
   for (std::size_t k = 0; k < values.size(); ++k) remarks.push_back(remarks_on(fit.parameters, fit.correlations, k));
   const Estimate& rate = fit.rate_dependence;
   if (std::isfinite(rate.value)) {
-    values.push_back({"a - b", rate.value, rate.std_error, fit.rate_dependence_lower95, fit.rate_dependence_upper95,
-                      friction_unit(motion)});
+    values.push_back({"a - b", friction_unit(motion), "", rate.value, rate.std_error, 0, fit.rate_dependence_lower95,
+                      fit.rate_dependence_upper95});
     remarks.emplace_back();
   }
   const double lower = fit.stiffness_ratio_lower95, upper = fit.stiffness_ratio_upper95;
   if (std::isfinite(fit.stiffness_ratio)) {
     const double std_error = fit.stiffness_ratio * 0.25 * std::log(upper / lower);
-    values.push_back({"k/k_c", fit.stiffness_ratio, std_error, lower, upper, "1"});
+    values.push_back({"k/k_c", "1", "", fit.stiffness_ratio, std_error, 0, lower, upper});
     remarks.push_back(critical_stiffness_text(fit));
   }
   ReportTable table = value_table("parameter", values);
@@ -296,8 +296,7 @@ Json step_json(const RateStateAnalysis& analysis, std::size_t s, const Motion& m
   if (trended) json["trend"] = estimate_of(whole->trend[s], analysis.detrend == Detrend::time ? 1 : 1 / kMillimetre);
   if (own == nullptr) return json;
   json["own_fit"] =
-      object("parameters", list_of(own->parameters, [&](const FitParameter& p) { return parameter_json(p, motion); }),
-             "rmse", own->rmse, "messages", own->messages);
+      object("parameters", json_of(results_of(own->parameters, motion)), "rmse", own->rmse, "messages", own->messages);
   json["own_fit"].update(stability_json(*own));
   return json;
 }

@@ -37,16 +37,8 @@ void add_comparisons(std::span<const Fit> fits, std::size_t best, const Motion& 
 /// A model and its parameters: what a reader looks for first. name: "best law"; nothing where there is no fit.
 Facts model_facts(const char* name, std::span<const Fit> fits, std::size_t best, const Motion& motion);
 
-/// A value with its errors, in the unit people read.
-struct ShownValue {
-  std::string name;
-  double value, std_error, lower95, upper95;
-  std::string unit, limits = {};  ///< limits: "at least 28", of one that is not determined
-  bool determined = true;
-};
 /// A row a value, in the digits that its error allows; columns that say nothing are left out. name: of the first one.
-ReportTable value_table(const char* name, const std::vector<ShownValue>& values);
-std::vector<ShownValue> shown_values(std::span<const FitParameter> parameters, const Motion& motion);
+ReportTable value_table(const char* name, const std::vector<ResultParameter>& values);
 /// What a reader must know of a parameter: "at bound, correlated"; empty where nothing.
 std::string remarks_on(std::span<const FitParameter> parameters, std::span<const Correlation> correlations,
                        std::size_t index);

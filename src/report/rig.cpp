@@ -24,12 +24,12 @@ std::string ShownRigValue::text() const {
 namespace {
 
 ReportTable rig_table(const RigFit& rig) {
-  std::vector<ShownValue> values;
+  std::vector<ResultParameter> values;
   std::vector<std::string> systematic;
   for (const ShownRigValue& q : shown_rig(rig)) {
     const RigValue& v = q.value;
     if (!v.determined) continue;
-    values.push_back({q.name, v.value / q.si, v.std_error / q.si, v.lower95 / q.si, v.upper95 / q.si, q.unit});
+    values.push_back({q.name, q.unit, "", v.value / q.si, v.std_error / q.si, 0, v.lower95 / q.si, v.upper95 / q.si});
     systematic.push_back(v.systematic > 0 ? significant(v.systematic / q.si, 2) : "");
   }
   ReportTable table = value_table("quantity", values);

@@ -41,8 +41,8 @@ struct RunRecord {
 
 /// A parameter of a stored fit, in `unit`. What is not known is NaN.
 struct ResultParameter {
-  std::string name, unit;
-  std::string effect;  ///< key; empty for the base law
+  std::string name = {}, unit = {};
+  std::string effect = {};  ///< key; empty for the base law
   double value = 0;
   double std_error = 0;             ///< statistical, from cycle to cycle of the run
   double systematic = 0;            ///< standard uncertainty from the declared instruments; 0 where none is declared

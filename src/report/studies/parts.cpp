@@ -47,12 +47,11 @@ std::string friction_sentence(const Machine& m) {
 }
 
 ReportTable machine_table(const StudiedMachine& studied) {
-  const double unknown = std::nan("");
-  std::vector<ShownValue> values;
+  std::vector<ResultParameter> values;
   std::vector<std::string> meanings;
   for (const Variable& v : variables_of(studied.machine)) {
-    values.push_back({v.name, value_of(studied.machine, v.name) / v.si, std_error_of(studied, v.name) / v.si, unknown,
-                      unknown, v.unit == "1" ? "" : v.unit});
+    values.push_back({v.name, v.unit == "1" ? "" : v.unit, "", value_of(studied.machine, v.name) / v.si,
+                      std_error_of(studied, v.name) / v.si, 0, std::nan("")});
     meanings.push_back(v.meaning);
   }
   ReportTable table = value_table("number", values);
