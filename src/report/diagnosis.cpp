@@ -76,11 +76,9 @@ ReportSection traces_section(const DiagnosedTraces& result) {
 /// A chart of held-out errors beside the noise floor.
 Chart errors_chart(const DiagnosedTraces& result, const char* id, const char* title, const char* note) {
   const std::string unit = result.traces.empty() ? "1" : friction_unit(result.traces.front().motion);
-  return {.id = id,
-          .title = title,
-          .note = note,
-          .panels = {{.quantity = "held-out error", .unit = unit, .from_zero = true}},
-          .marks = {{result.diagnosis.floor_rmse, false, Dash::dashed, "noise floor"}}};
+  Chart chart = chart_of(id, title, {}, {.quantity = "held-out error", .unit = unit, .from_zero = true}, note);
+  chart.marks = {{result.diagnosis.floor_rmse, false, Dash::dashed, "noise floor"}};
+  return chart;
 }
 
 /// Of what was fitted, in the order of EffectStatus.
@@ -112,15 +110,13 @@ Chart ladder_chart(const DiagnosedTraces& result) {
 /// Error of the law and of the final model that goes with each variable, and the whole of it, on one scale.
 Chart where_chart(const DiagnosedTraces& result) {
   const Diagnosis& d = result.diagnosis;
-  Chart chart{.id = "where",
-              .title = "Where the error goes: what it varies with",
-              .note = where_sentence(d.where) +
-                      " Each point is the error that a free function of the variable would take away; on top the whole "
-                      "held-out error. These errors overlap where variables go together.",
-              .x = {.quantity = "error", .unit = level_unit(result).empty() ? "1" : "N", .from_zero = true},
-              .marks = {{d.floor_rmse, true, Dash::dashed, "noise floor"}},
-              .height = 150 + 40 * static_cast<int>(std::max<std::size_t>(3, d.where.size() + 1)),
-              .half = true};
+  const std::string unit = level_unit(result).empty() ? "1" : "N";
+  Chart chart = half_chart("where", "Where the error goes: what it varies with",
+                           {.quantity = "error", .unit = unit, .from_zero = true}, {},
+                           where_sentence(d.where) +
+                               " Each point is the error that a free function of the variable would take away; on top "
+                               "the whole held-out error. These errors overlap where variables go together.");
+  chart.marks = {{d.floor_rmse, true, Dash::dashed, "noise floor"}};
   if (d.ladder.empty()) return chart;
   std::vector<std::string>& names = chart.panels[0].names;
   const auto add = [&](const std::string& model, const Rung& rung, const std::vector<Share>& shares, Stroke stroke) {
@@ -167,7 +163,6 @@ Chart candidates_chart(const DiagnosedTraces& result) {
     chart.x.names.push_back(finding->key);
   }
   if (!d.ladder.empty()) chart.marks.push_back({d.ladder.front().held_out_rmse, false, Dash::dotted, law_text(d)});
-  chart.height = 420;
   return chart;
 }
 
@@ -349,9 +344,9 @@ Report report_of(const DiagnosedTraces& result, const ReportOptions& options) {
   static const Motion none;
   const Motion& motion = result.traces.empty() ? none : result.traces.front().motion;
   const Identification* one = result.traces.size() == 1 ? &result.traces.front() : nullptr;
-  Report report = titled_report(
-      "diagnosis", one != nullptr ? file_name(one->path) : fmt::format("{} traces together", result.traces.size()),
-      "Diagnosis", diagnosis_verdict(result));
+  const std::string several = fmt::format("{} traces together", result.traces.size());
+  Report report =
+      titled_report("diagnosis", one != nullptr ? file_name(one->path) : several, diagnosis_verdict(result));
   for (const Identification& trace : result.traces) {
     report.warnings.insert(report.warnings.end(), trace.warnings.begin(), trace.warnings.end());
   }

@@ -102,11 +102,6 @@ Suggestion next_command(const Identification& r, const ReportOptions& options) {
        {true, "to see which effects can be added", "identify effects"}});
 }
 
-/// Of what the motion shows, in the order of RecordKind.
-constexpr std::array<const char*, 8> kHeadings = {
-    "Stick-slip", "Sliding",        "Points",         "Stick-slip",
-    "Motion",     "Friction alone", "Velocity steps", "Slide, hold, slide"};
-
 /// The charts of the trace in their sections.
 void draw(const Identification& result, const ReportOptions& options, TraceSections& sections) {
   constexpr std::size_t kDrawnModels = 3;
@@ -121,8 +116,8 @@ void draw(const Identification& result, const ReportOptions& options, TraceSecti
 
 /// What the motion shows, as the text has it; a page has the same at its head.
 ReportSection motion_section(const Identification& result) {
-  ReportSection section{
-      "motion", style_of(kind_of_record(result.motion, result.segmentation), kHeadings), {}, Medium::terminal};
+  const std::string kind(to_string(kind_of_record(result.motion, result.segmentation)));
+  ReportSection section{"motion", capitalised(kind), {}, Medium::terminal};
   Facts facts = stick_slip_facts(result);
   for (auto& [name, value] : facts) {
     if (name == "frequency") value += " (+/- is one standard error, here and below)";
@@ -136,8 +131,7 @@ ReportSection motion_section(const Identification& result) {
 
 Report report_of(const Identification& result, const ReportOptions& options) {
   const bool driven = is_driven_in_steps(result.motion.kind);
-  Report report = titled_report("friction law", file_name(result.path), driven ? "Rate and state" : "Friction law",
-                                verdict(result));
+  Report report = titled_report(driven ? "rate and state" : "friction law", file_name(result.path), verdict(result));
   report.warnings = result.warnings;
   report.facts = model_facts("best law", result.fits, result.best, result.motion);
   add_facts(result, report);

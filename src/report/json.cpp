@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <utility>
 
 #include "campaign/described_results.hpp"
@@ -67,23 +66,15 @@ std::vector<std::vector<double>> shown_covariance(const Fit& fit) {
 
 ResultFit result_of(const Fit& fit, const Motion& motion) {
   ResultFit out;
+  static_cast<FitSummary&>(out) = fit;
   out.law = to_string(fit.model.law());
   out.protocol = to_string(fit.protocol);
   out.effects = fit.model.effect_keys();
   out.effect_names = fit.model.effect_names();
   add_parameters(fit.parameters, fit.correlations, motion, out);
   out.covariance = shown_covariance(fit);
-  out.degrees_of_freedom = fit.degrees_of_freedom;
-  out.error = fit.error;
-  out.floor = fit.floor;
-  out.explained = fit.explained;
-  out.stick_creep = fit.stick_rmse;
-  out.fastest = fit.fastest;
-  out.converged = fit.converged;
   out.conditional = is_conditional(fit);
   out.samples = fit.observations;
-  out.cycles = fit.cycles;
-  out.messages = fit.messages;
   return out;
 }
 

@@ -31,27 +31,14 @@ std::string curve_name(const Fit& fit) {
 }
 
 ResultParameter result_of(const FitParameter& p, const Motion& motion) {
-  const auto in_unit = [&](double si) { return shown(p, si); };
-  ResultParameter out;
-  out.name = p.parameter.name;
-  out.unit = shown_unit(p, motion);
-  out.effect = p.effect;
-  out.value = in_unit(p.value);
-  out.std_error = in_unit(p.std_error);
-  out.systematic = in_unit(p.systematic);
-  out.lower95 = in_unit(p.lower95);
-  out.upper95 = in_unit(p.upper95);
-  out.profile_lower95 = in_unit(p.profile_lower95);
-  out.profile_upper95 = in_unit(p.profile_upper95);
-  if (p.range) {
-    out.range_lower = in_unit(p.range->lower);
-    out.range_upper = in_unit(p.range->upper);
+  ResultParameter out{p, p.parameter.name, shown_unit(p, motion), p.effect};
+  for (double* value : {&out.value, &out.std_error, &out.lower95, &out.upper95, &out.systematic, &out.profile_lower95,
+                        &out.profile_upper95, &out.start}) {
+    *value = shown(p, *value);
   }
-  out.start = in_unit(p.start);
+  if (p.range) out.range_lower = shown(p, p.range->lower), out.range_upper = shown(p, p.range->upper);
   out.lower = p.parameter.lower;
   out.upper = p.parameter.upper;
-  out.at_bound = p.at_bound;
-  out.determined = p.determined;
   return out;
 }
 

@@ -25,14 +25,15 @@ ReportTable parameter_table_of(const RateStateFit& fit, const Motion& motion) {
   for (std::size_t k = 0; k < values.size(); ++k) remarks.push_back(remarks_on(fit.parameters, fit.correlations, k));
   const Estimate& rate = fit.rate_dependence;
   if (std::isfinite(rate.value)) {
-    values.push_back({"a - b", friction_unit(motion), "", rate.value, rate.std_error, 0, fit.rate_dependence_lower95,
-                      fit.rate_dependence_upper95});
+    values.push_back({{rate.value, rate.std_error, fit.rate_dependence_lower95, fit.rate_dependence_upper95},
+                      "a - b",
+                      friction_unit(motion)});
     remarks.emplace_back();
   }
   const double lower = fit.stiffness_ratio_lower95, upper = fit.stiffness_ratio_upper95;
   if (std::isfinite(fit.stiffness_ratio)) {
     const double std_error = fit.stiffness_ratio * 0.25 * std::log(upper / lower);
-    values.push_back({"k/k_c", "1", "", fit.stiffness_ratio, std_error, 0, lower, upper});
+    values.push_back({{fit.stiffness_ratio, std_error, lower, upper}, "k/k_c", "1"});
     remarks.push_back(critical_stiffness_text(fit));
   }
   ReportTable table = value_table("parameter", values);
@@ -334,7 +335,7 @@ Json rate_state_fits_json(const RateStateAnalysis& analysis, const Motion& motio
                  .slow_noise = fit.noise_slow,
                  .rmse = std::hypot(fit.noise_white, fit.noise_slow),
                  .source = "residuals"};
-    out.explained = out.stick_creep = out.fastest = std::nan("");
+    out.explained = out.stick_rmse = out.fastest = std::nan("");
     out.converged = fit.converged;
     out.samples = fit.samples;
     out.messages = fit.messages;

@@ -52,12 +52,12 @@ void Report::keep_for(Medium medium) {
   for (ReportSection& section : sections) std::erase_if(section.items, elsewhere);
 }
 
-Report titled_report(const std::string& kind, const std::string& title, const std::string& made, std::string lead) {
+Report titled_report(const std::string& kind, const std::string& title, std::string lead) {
   Report report;
   report.kind = kind;
   report.title = title;
   report.subtitle =
-      fmt::format("{} by tribofit {}; ± is one standard error, everywhere in this report.", made, version);
+      fmt::format("{} by tribofit {}; ± is one standard error, everywhere in this report.", capitalised(kind), version);
   report.lead = std::move(lead);
   return report;
 }
@@ -96,11 +96,6 @@ void TraceSections::add_trace(const DrawnTrace& drawn) {
 }
 
 void TraceSections::add_models(const DrawnTrace& drawn) {
-  if (drawn.trace.motion.is_points()) {
-    law.add(points_chart(drawn));
-    errors.add(error_charts(drawn));
-    return;
-  }
   if (drawn.trace.motion.size() < 2) return;
   std::vector<Chart> windows, of_errors;
   Chart of_law;  // it alone evaluates models, whose formulas must not be shared between threads

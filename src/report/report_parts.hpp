@@ -48,8 +48,8 @@ ReportTable parameter_table(const Fit& fit, const Motion& motion, bool systemati
 /// The name of a file without its folder, as text that is valid UTF-8.
 std::string file_name(const std::string& path);
 
-/// A report that says what it is; kind: "diagnosis", made: "Diagnosis".
-Report titled_report(const std::string& kind, const std::string& title, const std::string& made, std::string lead);
+/// A report that says what it is; kind: "diagnosis".
+Report titled_report(const std::string& kind, const std::string& title, std::string lead);
 
 /// The best fit, then others that are wanted beside it; at most `most`.
 std::vector<const Fit*> drawn_models(std::span<const Fit> fits, std::size_t best, std::size_t most,

@@ -156,6 +156,7 @@ TEST_F(Pictures, NamesAreShownAsTheyAre) {
   Chart chart = straight_chart();
   chart.lines[0].name = kAwkward;
   chart.panels[0].quantity = "50% `d` $H \\a it's a_b {";
+  chart.panels[0].part = 2;  // room for it on one line
   chart.marks = {{3, true, Dash::dotted, "it's `here` {"}, {2, false, Dash::dotted, "a \\ 100%"}};
   const std::string svg = svg_of(chart);
   EXPECT_THAT(texts_of(svg), AllOf(Contains(kAwkward), Contains("50% `d` $H \\a it's a_b { [mm/s2]"),

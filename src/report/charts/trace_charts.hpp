@@ -18,7 +18,7 @@ struct DrawnTrace {
   double share;                                  ///< part of the points of a page that this trace may have
   std::vector<std::vector<double>> predictions;  ///< of each model, NaN outside slips
   std::vector<SlipBranch> pieces;                ///< of the slips
-  double fastest = 0;                            ///< |v_r| of them [mm/s]; 0 where nothing slips
+  double fastest = 0, slowest = 0;               ///< |v_r| of them, and of all samples [mm/s]; 0 where nothing slips
   int threads;                                   ///< that draw side by side
 
   DrawnTrace(const Identification& identification, const std::vector<const Fit*>& beside,
@@ -36,11 +36,9 @@ std::vector<Chart> cycle_charts(const DrawnTrace& drawn);
 std::vector<Chart> measure_charts(const DrawnTrace& drawn);
 
 /// Friction over |v_r|: branches as bands over cycles, laws with their 95 % bands, residuals in units of the noise
-/// floor. Shows nothing where nothing slips.
+/// floor. Of steady points each is a symbol with its standard error; over the logarithm of the speed where they reach
+/// over two decades. Shows nothing where nothing slips.
 Chart law_chart(const DrawnTrace& drawn);
-/// The same of steady points, each a symbol with its standard error; over the logarithm of the speed where they reach
-/// over two decades.
-Chart points_chart(const DrawnTrace& drawn);
 /// Relative errors ([D] Eq 5) over speed and time (points have none), and the map of residuals over cycle and phase of
 /// the slip.
 std::vector<Chart> error_charts(const DrawnTrace& drawn);

@@ -70,13 +70,9 @@ function facts(pairs) {
     .map(([name, value]) => make("div", {}, make("dt", {}, prose(name)), make("dd", {}, prose(value)))));
 }
 
+/** Saves content, or what a link leads to. */
 function save(name, content) {
-  const url = URL.createObjectURL(content);
-  const link = make("a", { href: url, download: name });
-  document.body.append(link);
-  link.click();
-  link.remove();
-  setTimeout(() => URL.revokeObjectURL(url), 10000);
+  make("a", { href: content instanceof Blob ? URL.createObjectURL(content) : content, download: name }).click();
 }
 
 /** The numbers of a chart behind a switch: made when it is opened, and anew by its fill(); cut after `most` rows, whole as

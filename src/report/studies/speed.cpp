@@ -172,11 +172,7 @@ ChartAxis speed_axis(const SpeedStudy& study) {
 
 Chart over_speed(const StudiedMachine& studied, const SpeedStudy& study, const char* id, const char* title,
                  std::initializer_list<const char*> names) {
-  Chart chart{.id = id,
-              .title = title,
-              .x = speed_axis(study),
-              .panels = {},
-              .height = 150 + 170 * static_cast<int>(names.size())};
+  Chart chart{.id = id, .title = title, .x = speed_axis(study), .panels = {}};
   for (const std::string name : names) {
     const MeasureInfo& measure = measure_named(name);
     const std::size_t panel = chart.panels.size();
@@ -197,13 +193,11 @@ Chart over_speed(const StudiedMachine& studied, const SpeedStudy& study, const c
 }
 
 Chart growth_chart(const SpeedStudy& study) {
-  Chart chart{.id = "growth-rate",
-              .title = "Growth of a small vibration about steady sliding",
-              .note = "Above zero steady sliding is unstable: a vibration grows until it sticks or is held by the law.",
-              .x = speed_axis(study),
-              .panels = {{.quantity = "growth rate", .unit = "1/s"}},
-              .lines = {{"growth rate", in_unit(study.velocity, kMillimetre), study.growth_rate, stroke_of(0)}},
-              .marks = {{.dash = Dash::solid}}};
+  Chart chart = chart_of(
+      "growth-rate", "Growth of a small vibration about steady sliding", speed_axis(study), {"growth rate", "1/s"},
+      "Above zero steady sliding is unstable: a vibration grows until it sticks or is held by the law.");
+  chart.lines = {{"growth rate", in_unit(study.velocity, kMillimetre), study.growth_rate, stroke_of(0)}};
+  chart.marks = {{.dash = Dash::solid}};
   mark_critical(study, true, chart);
   return chart;
 }
