@@ -159,23 +159,20 @@ void write_csv_folder(const std::string& folder, const Identification& result) {
 
 void write_csv_folder(const std::string& folder, const DiagnosedTraces& result) {
   WholeFolder outer(folder);
-  if (result.traces.size() == 1) {
-    add_files(outer, result.traces.front(), result.fits, result.best);
-    outer.commit();
-    return;
-  }
   std::set<std::string> names;
   std::vector<std::unique_ptr<WholeFolder>> folders;
-  std::size_t before = 0;
-  for (const Identification& trace : result.traces) {
+  for (std::size_t k = 0, before = 0; k < result.traces.size(); ++k) {
+    const Identification& trace = result.traces[k];
     const std::string stem = std::filesystem::path(trace.path).stem().string();
     std::string name = stem;
     for (int n = 2; !names.insert(name).second; ++n) name = fmt::format("{}-{}", stem, n);
-    folders.push_back(std::make_unique<WholeFolder>(folder + "/" + name));
-    add_files(*folders.back(), trace, result.fits, result.best, folders.size() - 1, before);
-    folders.back()->finish();  // closes its files
+    if (result.traces.size() > 1) folders.push_back(std::make_unique<WholeFolder>(folder + "/" + name));
+    WholeFolder& own = folders.empty() ? outer : *folders.back();
+    add_files(own, trace, result.fits, result.best, k, before);
+    own.finish();  // closes its files
     before += evidence_of(trace.motion, trace.segmentation);
   }
+  outer.commit();
   for (const auto& one : folders) one->commit();
 }
 

@@ -93,7 +93,6 @@ Chart ladder_chart(const DiagnosedTraces& result) {
       result, "ladder", "The ladder: held-out error, as effects are added",
       "Bars are one standard error. At the noise floor only noise and scatter from cycle to cycle are left.");
   ChartLine& line = chart.line("held-out error", {Colour::blue, Dash::solid, Symbol::circle, 2, 10});
-  line.bars = true;
   for (std::size_t k = 0; k < d.ladder.size(); ++k) {
     const Rung& rung = d.ladder[k];
     const auto x = static_cast<double>(k);
@@ -153,7 +152,7 @@ Chart candidates_chart(const DiagnosedTraces& result) {
                              "statuses need not compare: what is superseded helps alone but not beside what was added, "
                              "even where its error here is lower. Bars are one standard error, from cycle to cycle.");
   for (std::size_t k = 0; k < kStatusStrokes.size(); ++k) {
-    chart.line(std::string(status_text(static_cast<EffectStatus>(k))), kStatusStrokes[k]).bars = true;
+    chart.line(std::string(status_text(static_cast<EffectStatus>(k))), kStatusStrokes[k]);
   }
   for (const EffectFinding* finding : sorted_findings(d)) {
     const auto status = static_cast<std::size_t>(finding->status);
@@ -326,14 +325,13 @@ void draw(const DiagnosedTraces& result, TraceSections& sections) {
   constexpr std::size_t kDrawnTraces = 8;
   const std::size_t count = result.traces.size(), drawn = std::min(count, kDrawnTraces);
   const auto bare = [&](const Fit& fit) { return fit.model.law() == result.diagnosis.law; };
-  const std::vector<const Fit*> models = drawn_models(result.fits, result.best, 2, bare);
-  const std::vector<const Fit*> curves = drawn_curves(models, result.rungs);
+  const DrawnLaws laws = drawn_laws(result.fits, result.best, 2, bare, result.rungs);
   for (std::size_t k = 0; k < drawn; ++k) {
     const Identification& trace = result.traces[k];
     for (ReportSection* s : sections.all()) {
       if (drawn > 1) s->heading(trace.path);
     }
-    sections.add_trace(DrawnTrace(trace, models, curves, fmt::format("t{}", k + 1), 1 / static_cast<double>(drawn), k));
+    sections.add_trace(DrawnTrace(trace, laws, fmt::format("t{}", k + 1), 1 / static_cast<double>(drawn), k));
   }
   if (count > drawn) sections.trace.plain(fmt::format("The first {} of {} traces are drawn.", drawn, count));
 }
@@ -361,7 +359,6 @@ Report report_of(const DiagnosedTraces& result, const ReportOptions& options) {
   if (!result.traces.empty()) sections.trace.add(health_table(result.traces));
   add_fits(result.fits, result.best, motion, options.instruments_declared, sections.law);
   if (!result.fits.empty()) sections.law.add(profile_charts(result.fits[result.best], motion, "best"));
-  sections.add_sources();
   for (ReportSection* s : sections.all()) s->medium = Medium::page;
   report.add({traces_section(result), diagnosis_section(result, motion), law_section(result, motion), sections.trace,
               sections.law, sections.errors, sections.cycles,

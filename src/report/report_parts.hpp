@@ -51,11 +51,10 @@ std::string file_name(const std::string& path);
 /// A report that says what it is; kind: "diagnosis".
 Report titled_report(const std::string& kind, const std::string& title, std::string lead);
 
-/// The best fit, then others that are wanted beside it; at most `most`.
-std::vector<const Fit*> drawn_models(std::span<const Fit> fits, std::size_t best, std::size_t most,
-                                     const std::function<bool(const Fit&)>& wanted);
-/// Laws that are drawn over speed: of the models beside the samples, then of others, each name once.
-std::vector<const Fit*> drawn_curves(const std::vector<const Fit*>& models, std::span<const Fit> others);
+/// Beside the samples the best fit, then others that are wanted, at most `most`; over speed these, then others, each
+/// name once.
+DrawnLaws drawn_laws(std::span<const Fit> fits, std::size_t best, std::size_t most,
+                     const std::function<bool(const Fit&)>& wanted, std::span<const Fit> others);
 
 /// Charts of one trace in the sections that a report has once.
 struct TraceSections {
@@ -63,8 +62,6 @@ struct TraceSections {
       errors{"errors", "Errors", {}}, cycles{"cycles", "Cycles and spectrum", {}};
   std::array<ReportSection*, 4> all() { return {&trace, &law, &errors, &cycles}; }
   void add_trace(const DrawnTrace& drawn);
-  /// A footnote below the errors: where their measure comes from.
-  void add_sources();
   void add_models(const DrawnTrace& drawn);  ///< all of it but the cycles
   void add_cycles(const DrawnTrace& drawn);
 };

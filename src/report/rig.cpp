@@ -123,7 +123,7 @@ Report report_of(const RigIdentification& result, const ReportOptions& options) 
   values.add(rig_table(rig));
   values.add(ReportFacts{behind_rig(rig)});
   TraceSections sections;
-  if (options.charts) sections.add_trace(DrawnTrace(trace, {}, {}, "t1"));
+  if (options.charts) sections.add_trace(DrawnTrace(trace, {}, "t1"));
   sections.trace.title = "The record";
   sections.trace.add(health_table({&trace, 1}), Medium::page);
   const std::string command = command_line(words_of({"rig"}, options.arguments), options.inputs_or(trace.path));

@@ -41,7 +41,7 @@ struct ChartAxis {
   bool from_zero = false;
   bool logarithmic = false;
   std::vector<std::string> names = {};  ///< of the values 0, 1, 2 ... where the axis counts things
-  double part = 1;                      ///< height of a panel that is not told by names, 150 pixels of the page
+  double part = 1;                      ///< height of a panel without names, in 150 pixels of the page
 };
 
 /// A line or points; with `low` and `high` also what is uncertain about it.
@@ -58,9 +58,10 @@ struct ChartLine {
     x.push_back(at);
     y.push_back(value);
   }
-  /// With its error to either side; one that is not known has no length.
+  /// With its error to either side as a bar; one that is not known has no length.
   void add(double at, double value, double error) {
     add(at, value);
+    bars = true;
     low.push_back(error > 0 ? value - error : value);
     high.push_back(error > 0 ? value + error : value);
   }

@@ -41,7 +41,7 @@ class MeansChart {
     const bool alone = over_.series.size() == 1;
     std::size_t k = 0;
     for (const OverConditions::Series& series : over_.series) {
-      ChartLine& line = bars(alone || series.name.empty() ? name : name + ", " + series.name, marked(kind));
+      ChartLine& line = new_line(alone || series.name.empty() ? name : name + ", " + series.name, marked(kind));
       if (!alone) line.stroke.dash = stroke_of(k++).dash;
       for (std::size_t i = 0; i < series.groups.size(); ++i) {
         const Maybe measure = value(series.groups[i]);
@@ -58,7 +58,7 @@ class MeansChart {
   /// The earlier values of that name, one for each of the conditions.
   MeansChart& earlier(const std::string& name) {
     if (of_.earlier == nullptr) return *this;
-    ChartLine& line = bars(of_.earlier_name(), dots(Colour::red, Symbol::cross, 9));
+    ChartLine& line = new_line(of_.earlier_name(), dots(Colour::red, Symbol::cross, 9));
     std::vector<bool> met(of_.groups.size(), false);
     for (const ComparedValue& v : of_.earlier->values) {
       if (v.earlier.name != name || met[v.group]) continue;
@@ -73,10 +73,8 @@ class MeansChart {
   }
 
  private:
-  ChartLine& bars(const std::string& name, const Stroke& stroke) {
-    ChartLine& line = chart_.line(name, stroke, chart_.panels.size() - 1);
-    line.bars = true;
-    return line;
+  ChartLine& new_line(const std::string& name, const Stroke& stroke) {
+    return chart_.line(name, stroke, chart_.panels.size() - 1);
   }
 
   const DrawnCampaign& of_;
@@ -273,7 +271,6 @@ Chart scatter_chart(const DrawnCampaign& campaign, const std::string& law) {
     std::string name, unit;
     for (std::size_t k = 0; k < campaign.shown.size(); ++k) {
       ChartLine& line = chart.line(conditions_text(campaign.groups[campaign.shown[k]]), marked(k, false), p);
-      line.bars = true;
       const std::vector<std::size_t>& runs = campaign.groups[campaign.shown[k]].runs;
       for (const std::size_t i : thinned(runs.size(), chart_detail.runs)) {
         const RunResult& run = campaign.runs[runs[i]];

@@ -70,7 +70,6 @@ Chart healing_chart(const Healing& healing, const std::string& unit) {
                            {"time at rest", "s"}, {"healing", unit});
   chart.x.logarithmic = true;
   ChartLine& line = chart.line("holds", dots(Colour::blue, Symbol::circle));
-  line.bars = true;
   for (const HoldMeasures& hold : healing.holds)
     line.add(hold.duration, hold.healing, std::hypot(hold.peak.std_error, hold.sliding.std_error));
   return chart;

@@ -175,10 +175,9 @@ Chart record_chart(const DrawnTrace& d) {
 
 }  // namespace
 
-DrawnTrace::DrawnTrace(const Identification& identification, const std::vector<const Fit*>& beside,
-                       const std::vector<const Fit*>& laws, std::string prefix, double part, std::size_t record,
-                       int draw_on)
-    : trace(identification), models(beside), curves(laws), id(std::move(prefix)), share(part), threads(draw_on) {
+DrawnTrace::DrawnTrace(const Identification& identification, const DrawnLaws& laws, std::string prefix, double part,
+                       std::size_t record, int draw_on)
+    : DrawnLaws(laws), trace(identification), id(std::move(prefix)), share(part), threads(draw_on) {
   pieces = slip_branches(trace.motion, trace.segmentation);
   fastest = fastest_of(trace.motion, pieces) / kMillimetre;
   slowest = fastest;

@@ -9,11 +9,15 @@
 
 namespace tribofit {
 
+/// Fits that are drawn.
+struct DrawnLaws {
+  std::vector<const Fit*> models = {};  ///< beside the samples, the one to look at first
+  std::vector<const Fit*> curves = {};  ///< whose law is drawn over speed: the models, and others
+};
+
 /// What the charts of one trace share: its samples, and what each model says of every one of them.
-struct DrawnTrace {
+struct DrawnTrace : DrawnLaws {
   const Identification& trace;
-  const std::vector<const Fit*>& models;         ///< beside the samples, the one to look at first
-  const std::vector<const Fit*>& curves;         ///< whose law is drawn over speed: the models, and others
   std::string id;                                ///< begins the ids of the charts
   double share;                                  ///< part of the points of a page that this trace may have
   std::vector<std::vector<double>> predictions;  ///< of each model, NaN outside slips
@@ -21,9 +25,8 @@ struct DrawnTrace {
   double fastest = 0, slowest = 0;               ///< |v_r| of them, and of all samples [mm/s]; 0 where nothing slips
   int threads;                                   ///< that draw side by side
 
-  DrawnTrace(const Identification& identification, const std::vector<const Fit*>& beside,
-             const std::vector<const Fit*>& laws, std::string prefix, double part = 1, std::size_t record = 0,
-             int draw_on = 1);
+  DrawnTrace(const Identification& identification, const DrawnLaws& laws, std::string prefix, double part = 1,
+             std::size_t record = 0, int draw_on = 1);
   /// Points that a series of this trace may have where a trace alone has `whole`.
   std::size_t bins(std::size_t whole) const;
 };

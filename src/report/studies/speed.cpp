@@ -180,7 +180,6 @@ Chart over_speed(const StudiedMachine& studied, const SpeedStudy& study, const c
     for (const Way& way : ways_of(study)) add_way(study, way, measure, panel, chart);
     if (const Estimate* measured = measured_value(studied, measure)) {
       ChartLine& line = chart.line("measured", dots(Colour::black, Symbol::cross, 9), panel);
-      line.bars = true;
       line.add(studied.machine.disc_velocity() / kMillimetre, measured->value / measure.si,
                kNormalQuantile95 * measured->std_error / measure.si);
     }
