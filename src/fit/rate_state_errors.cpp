@@ -342,9 +342,6 @@ void say_excess(const FitErrors& found, double distance, const std::vector<Eigen
 
 RateStateFit fit_from(const RateStateProblem& problem, const RateStateUnknowns& unknowns, const Solution& minimum) {
   RateStateFit fit;
-  fit.error = {0, kUnknown, kUnknown, kUnknown};
-  fit.explained = fit.stick_rmse = fit.fastest = kUnknown;
-  fit.floor.source = "residuals";
   fit.evolution = problem.model().evolution;
   fit.states = problem.model().states;
   if (!minimum.converged) {

@@ -59,6 +59,12 @@ struct VelocityStep {
 
 /// Rate-and-state friction fitted to steps together (`step` is empty) or to one of them.
 struct RateStateFit : FitSummary {
+  RateStateFit() {
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    error = {0, unknown, unknown, unknown};
+    explained = stick_rmse = fastest = unknown;
+    floor.source = "residuals";
+  }
   StateEvolution evolution = StateEvolution::ageing;
   std::optional<std::size_t> step;
   std::size_t states = 1;                ///< state variables
