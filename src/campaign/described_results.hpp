@@ -111,7 +111,7 @@ constexpr auto description(const ResultFit*) {
   return described("law", &F::law, "protocol", &F::protocol, "effects", &F::effects, "effect_names", &F::effect_names,
                    "parameters", &F::parameters, "error", &F::error, "floor_rmse", within(&F::floor, &Floor::rmse),
                    "converged", &F::converged, "conditional", &F::conditional, "messages", &F::messages, "floor",
-                   &F::floor, "explained", &F::explained, "stick_creep_rmse_mm_s", in(kMillimetre, &F::stick_creep),
+                   &F::floor, "explained", &F::explained, "stick_creep_rmse_mm_s", in(kMillimetre, &F::stick_rmse),
                    "fastest_mm_s", in(kMillimetre, &F::fastest), "samples", &F::samples, "cycles", &F::cycles,
                    "correlations", &F::correlations, "covariance", &F::covariance, "degrees_of_freedom",
                    &F::degrees_of_freedom);

@@ -76,8 +76,8 @@ std::optional<Healing> healing_of(const RateStateData& data, const RateStateProb
     hold.step = s;
     hold.duration = step.hold;
     const double level = at(stop - 1);
-    const Estimate before = offset_over(data, response, begin, stop, row, begin, fit.noise_white),
-                   behind = offset_over(data, response, from, to, row, begin, fit.noise_white);
+    const Estimate before = offset_over(data, response, begin, stop, row, begin, fit.floor.noise),
+                   behind = offset_over(data, response, from, to, row, begin, fit.floor.noise);
     hold.sliding = {level + before.value, before.std_error, before.degrees_of_freedom};
     hold.peak = {at(peak) + behind.value, behind.std_error, behind.degrees_of_freedom};
     hold.minimum = data.friction[lowest];
@@ -201,7 +201,7 @@ class Analysis {
         }
       });
       const double count = std::accumulate(counts.begin(), counts.end(), 0.0);
-      out_.fits[i].held_out_rmse = std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / count);
+      out_.fits[i].error.held_out_rmse = std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / count);
     }
   }
 

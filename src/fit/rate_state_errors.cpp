@@ -330,11 +330,11 @@ void say_excess(const FitErrors& found, double distance, const std::vector<Eigen
           "what is left is {} times as large over the first {} um behind the steps as elsewhere: this law does "
           "not describe the response",
           general(excess->factor, 2), general(1e6 * distance, 3)));
-  } else if (fit.noise_time > 0 && fit.noise_slow > kMuchWander * fit.noise_white) {
+  } else if (fit.noise_time > 0 && fit.floor.slow_noise > kMuchWander * fit.floor.noise) {
     fit.messages.push_back(
         fmt::format("what is left wanders by {} over {} s, far above the noise of a sample: the measurement "
                     "drifts, or this law does not describe the response",
-                    general(fit.noise_slow, 2), general(fit.noise_time, 2)));
+                    general(fit.floor.slow_noise, 2), general(fit.noise_time, 2)));
   }
 }
 
@@ -355,13 +355,14 @@ RateStateFit fit_from(const RateStateProblem& problem, const RateStateUnknowns& 
   }
   fit.converged = true;
   fit.samples = static_cast<std::size_t>(found.count());
-  fit.rmse = std::sqrt(found.sum_of_squares() / found.count());
+  fit.error.rmse = std::sqrt(found.sum_of_squares() / found.count());
   const std::vector<Eigen::Index> free = take_values(unknowns, minimum.p, fit);
   std::vector<Eigen::Index> fitted = free;
   fitted.insert(fitted.end(), found.times().begin(), found.times().end());
   const WanderingNoise noise = found.noise(fitted);
-  fit.noise_white = noise.white;
-  fit.noise_slow = noise.slow;
+  fit.floor.noise = noise.white;
+  fit.floor.slow_noise = noise.slow;
+  fit.floor.rmse = std::hypot(noise.white, noise.slow);
   fit.noise_time = noise.time;
   const Eigen::MatrixXd influence = found.influence(fitted);
   const Errors errors = found.errors_of(influence, noise);
@@ -375,14 +376,14 @@ RateStateFit fit_from(const RateStateProblem& problem, const RateStateUnknowns& 
 }
 
 double p_value_of_no_answer(const RateStateProblem& problem, const Solution& minimum, const RateStateFit& fit) {
-  const bool is_noise = fit.noise_white > 0 && !fit.lacks.value_or(false) &&
-                        !(fit.noise_time > 0 && fit.noise_slow > kMuchWander * fit.noise_white);
+  const bool is_noise = fit.floor.noise > 0 && !fit.lacks.value_or(false) &&
+                        !(fit.noise_time > 0 && fit.floor.slow_noise > kMuchWander * fit.floor.noise);
   const auto free = std::count_if(fit.parameters.begin(), fit.parameters.end(),
                                   [](const FitParameter& p) { return p.std_error > 0 && !p.at_bound; });
   if (!is_noise || free == 0) return kUnknown;
   const FitErrors found(problem, minimum.p);
   if (!found.valid()) return kUnknown;
-  const WanderingNoise noise = {fit.noise_white, fit.noise_slow, fit.noise_time};
+  const WanderingNoise noise = {fit.floor.noise, fit.floor.slow_noise, fit.noise_time};
   const auto values = static_cast<double>(free) + static_cast<double>(found.turns().size());
   const double more = found.whitened_without_answer(noise) - found.whitened(noise);
   return more > 0 ? f_p_value(more / values, values, kLargeFreedom) : kUnknown;
@@ -391,8 +392,8 @@ double p_value_of_no_answer(const RateStateProblem& problem, const Solution& min
 double log_likelihood_below(const RateStateProblem& best, const Solution& best_minimum, const RateStateProblem& other,
                             const Solution& other_minimum, const RateStateFit& fit) {
   const FitErrors one(best, best_minimum.p), two(other, other_minimum.p);
-  if (!one.valid() || !two.valid() || !(fit.noise_white > 0)) return kUnknown;
-  const WanderingNoise noise = {fit.noise_white, fit.noise_slow, fit.noise_time};
+  if (!one.valid() || !two.valid() || !(fit.floor.noise > 0)) return kUnknown;
+  const WanderingNoise noise = {fit.floor.noise, fit.floor.slow_noise, fit.noise_time};
   return 0.5 * (two.whitened(noise) - one.whitened(noise));
 }
 

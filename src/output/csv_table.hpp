@@ -62,17 +62,35 @@ std::string csv_names(const nlohmann::ordered_json& object);
 /// Digits of what was measured: more than any instrument has.
 constexpr int kMeasuredDigits = 10;
 
-/// Writes a file of a folder: the names of the cells, then a line a row, which `row_of` gives as an object; that of row
-/// 0 has the names, even where there are no rows. digits: of numbers; 0: to the last.
+/// A CSV file of a folder, line by line, which begins with the names of the cells. digits: as of a CsvLine.
+class CsvFile {
+ public:
+  CsvFile(WholeFolder& files, const std::string& name, const std::string& names, int digits = kMeasuredDigits)
+      : file_(files.add(name)), line_(digits) {
+    file_.write(names + "\n");
+  }
+  template <class... Cells>
+  void add(const Cells&... cells) {
+    line_.add(cells...);
+  }
+  /// A line of what was added, then these cells.
+  template <class... Cells>
+  void row(const Cells&... cells) {
+    add(cells...);
+    file_.write(line_.take());
+  }
+
+ private:
+  WholeFile& file_;
+  CsvLine line_;
+};
+
+/// Writes a file of a folder, a line a row, which `row_of` gives as an object; that of row 0 has the names, even where
+/// there are no rows.
 template <class RowOf>
 void write_rows(WholeFolder& files, const std::string& name, std::size_t rows, const RowOf& row_of, int digits = 0) {
-  WholeFile& file = files.add(name);
-  file.write(csv_names(row_of(0)) + "\n");
-  CsvLine line(digits);
-  for (std::size_t k = 0; k < rows; ++k) {
-    line.add(row_of(k));
-    file.write(line.take());
-  }
+  CsvFile file(files, name, csv_names(row_of(0)), digits);
+  for (std::size_t k = 0; k < rows; ++k) file.row(row_of(k));
 }
 
 }  // namespace tribofit

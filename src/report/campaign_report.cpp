@@ -308,7 +308,7 @@ Report report_of(const ResultReader& results, std::span<const RunResult> runs, c
   const std::string folder = results.plan().folder.empty() ? results.folder() : results.plan().folder;
   const auto fitted = static_cast<std::size_t>(
       std::count_if(runs.begin(), runs.end(), [](const RunResult& r) { return r.run.status == RunStatus::ok; }));
-  Report report = titled_report("campaign", file_name(folder), "Campaign", lead_of(campaign, fitted, pooled.trends));
+  Report report = titled_report("campaign", file_name(folder), lead_of(campaign, fitted, pooled.trends));
   report.facts = {{"runs", std::to_string(results.size())},
                   {"fitted", std::to_string(fitted)},
                   {"failed", std::to_string(runs.size() - fitted)},

@@ -35,18 +35,17 @@ void write_samples(WholeFolder& folder, const Identification& result, const std:
   const std::vector<bool> slips = slipping_samples(m, result.segmentation);
   const Strokes strokes = strokes_of(m, result.segmentation);
   const bool derived = !m.velocity_std_error.empty();  // velocity and friction were made from another channel
-  WholeFile& file = folder.add("samples.csv");
-  file.write("time_s,relative_velocity_mm_s,mu,mu_model,phase,cycle,held_out_fold");
-  if (derived) file.write(",relative_velocity_std_error_mm_s,mu_std_error");
-  file.write(strokes.known() ? ",reversal_distance_mm\n" : "\n");
-  CsvLine line(kMeasuredDigits);
+  std::string names = "time_s,relative_velocity_mm_s,mu,mu_model,phase,cycle,held_out_fold";
+  if (derived) names += ",relative_velocity_std_error_mm_s,mu_std_error";
+  if (strokes.known()) names += ",reversal_distance_mm";
+  CsvFile file(folder, "samples.csv", names);
   for (std::size_t i = 0; i < m.size(); ++i) {
-    line.add(time_cell(m, i), m.relative_velocity[i] / kMillimetre, m.friction[i],
+    file.add(time_cell(m, i), m.relative_velocity[i] / kMillimetre, m.friction[i],
              model.empty() ? std::nan("") : model[i], slips[i] ? "slip" : "stick", index_cell(member.cycle[i]),
              index_cell(member.fold[i]));
-    if (derived) line.add(m.velocity_std_error[i] / kMillimetre, m.friction_std_error[i]);
-    if (strokes.known()) line.add(strokes.distance[i] / kMillimetre);
-    file.write(line.take());
+    if (derived) file.add(m.velocity_std_error[i] / kMillimetre, m.friction_std_error[i]);
+    if (strokes.known()) file.add(strokes.distance[i] / kMillimetre);
+    file.row();
   }
 }
 
@@ -72,16 +71,14 @@ void write_cycles(WholeFolder& folder, const Identification& result, const Membe
 
 void write_curves(WholeFolder& folder, std::span<const Fit> fits) {
   constexpr std::size_t kPoints = 201;
-  WholeFile& file = folder.add("curves.csv");
-  file.write("law,effects,protocol,relative_velocity_mm_s,mu,mu_lower95,mu_upper95,within_data\n");
-  CsvLine line(kMeasuredDigits);
+  CsvFile file(folder, "curves.csv",
+               "law,effects,protocol,relative_velocity_mm_s,mu,mu_lower95,mu_upper95,within_data");
   for (const Fit& fit : fits) {
     const std::string effects = fmt::format("{}", fmt::join(fit.model.effect_names(), "+"));
     const Curve curve = curve_of(fit, kPoints);
     for (std::size_t i = 0; i < curve.velocity.size(); ++i) {
-      line.add(to_string(fit.model.law()), effects, to_string(fit.protocol), curve.velocity[i] / kMillimetre,
+      file.row(to_string(fit.model.law()), effects, to_string(fit.protocol), curve.velocity[i] / kMillimetre,
                curve.mu[i], curve.lower95[i], curve.upper95[i], curve.velocity[i] <= fit.fastest);
-      file.write(line.take());
     }
   }
 }
@@ -89,14 +86,12 @@ void write_curves(WholeFolder& folder, std::span<const Fit> fits) {
 void write_errors(WholeFolder& folder, const Identification& result, const std::vector<double>& model,
                   const Membership& member) {
   const Motion& m = result.motion;
-  WholeFile& file = folder.add("errors.csv");
-  file.write("time_s,relative_velocity_mm_s,residual_" + friction_unit(m) + ",relative_error_1,cycle,held_out_fold\n");
-  CsvLine line(kMeasuredDigits);
+  CsvFile file(folder, "errors.csv",
+               "time_s,relative_velocity_mm_s,residual_" + friction_unit(m) + ",relative_error_1,cycle,held_out_fold");
   for (std::size_t i = 0; i < model.size(); ++i) {
     if (!std::isfinite(model[i])) continue;
-    line.add(time_cell(m, i), m.relative_velocity[i] / kMillimetre, m.friction[i] - model[i],
+    file.row(time_cell(m, i), m.relative_velocity[i] / kMillimetre, m.friction[i] - model[i],
              relative_error(m.friction[i], model[i]), index_cell(member.cycle[i]), index_cell(member.fold[i]));
-    file.write(line.take());
   }
 }
 
@@ -114,14 +109,11 @@ void add_files(WholeFolder& files, const Identification& trace, std::span<const 
 }
 
 void write_response(WholeFolder& folder, const RateStateAnalysis& analysis) {
-  WholeFile& file = folder.add("response.csv");
-  file.write("step_number,time_s,load_point_um,mu,mu_model,mu_other\n");
-  CsvLine line(kMeasuredDigits);
+  CsvFile file(folder, "response.csv", "step_number,time_s,load_point_um,mu,mu_model,mu_other");
   for (const RateStateCurve& c : analysis.curves) {
     for (std::size_t i = 0; i < c.time.size(); ++i) {
-      line.add(c.step + 1, c.time[i], c.displacement[i] / kMicrometre, c.friction[i], c.model[i],
+      file.row(c.step + 1, c.time[i], c.displacement[i] / kMicrometre, c.friction[i], c.model[i],
                c.other.empty() ? std::nan("") : c.other[i]);
-      file.write(line.take());
     }
   }
 }
@@ -167,23 +159,20 @@ void write_csv_folder(const std::string& folder, const Identification& result) {
 
 void write_csv_folder(const std::string& folder, const DiagnosedTraces& result) {
   WholeFolder outer(folder);
-  if (result.traces.size() == 1) {
-    add_files(outer, result.traces.front(), result.fits, result.best);
-    outer.commit();
-    return;
-  }
   std::set<std::string> names;
   std::vector<std::unique_ptr<WholeFolder>> folders;
-  std::size_t before = 0;
-  for (const Identification& trace : result.traces) {
+  for (std::size_t k = 0, before = 0; k < result.traces.size(); ++k) {
+    const Identification& trace = result.traces[k];
     const std::string stem = std::filesystem::path(trace.path).stem().string();
     std::string name = stem;
     for (int n = 2; !names.insert(name).second; ++n) name = fmt::format("{}-{}", stem, n);
-    folders.push_back(std::make_unique<WholeFolder>(folder + "/" + name));
-    add_files(*folders.back(), trace, result.fits, result.best, folders.size() - 1, before);
-    folders.back()->finish();  // closes its files
+    if (result.traces.size() > 1) folders.push_back(std::make_unique<WholeFolder>(folder + "/" + name));
+    WholeFolder& own = folders.empty() ? outer : *folders.back();
+    add_files(own, trace, result.fits, result.best, k, before);
+    own.finish();  // closes its files
     before += evidence_of(trace.motion, trace.segmentation);
   }
+  outer.commit();
   for (const auto& one : folders) one->commit();
 }
 

@@ -76,11 +76,9 @@ ReportSection traces_section(const DiagnosedTraces& result) {
 /// A chart of held-out errors beside the noise floor.
 Chart errors_chart(const DiagnosedTraces& result, const char* id, const char* title, const char* note) {
   const std::string unit = result.traces.empty() ? "1" : friction_unit(result.traces.front().motion);
-  return {.id = id,
-          .title = title,
-          .note = note,
-          .panels = {{.quantity = "held-out error", .unit = unit, .from_zero = true}},
-          .marks = {{result.diagnosis.floor_rmse, false, Dash::dashed, "noise floor"}}};
+  Chart chart = chart_of(id, title, {}, {.quantity = "held-out error", .unit = unit, .from_zero = true}, note);
+  chart.marks = {{result.diagnosis.floor_rmse, false, Dash::dashed, "noise floor"}};
+  return chart;
 }
 
 /// Of what was fitted, in the order of EffectStatus.
@@ -95,7 +93,6 @@ Chart ladder_chart(const DiagnosedTraces& result) {
       result, "ladder", "The ladder: held-out error, as effects are added",
       "Bars are one standard error. At the noise floor only noise and scatter from cycle to cycle are left.");
   ChartLine& line = chart.line("held-out error", {Colour::blue, Dash::solid, Symbol::circle, 2, 10});
-  line.bars = true;
   for (std::size_t k = 0; k < d.ladder.size(); ++k) {
     const Rung& rung = d.ladder[k];
     const auto x = static_cast<double>(k);
@@ -112,15 +109,13 @@ Chart ladder_chart(const DiagnosedTraces& result) {
 /// Error of the law and of the final model that goes with each variable, and the whole of it, on one scale.
 Chart where_chart(const DiagnosedTraces& result) {
   const Diagnosis& d = result.diagnosis;
-  Chart chart{.id = "where",
-              .title = "Where the error goes: what it varies with",
-              .note = where_sentence(d.where) +
-                      " Each point is the error that a free function of the variable would take away; on top the whole "
-                      "held-out error. These errors overlap where variables go together.",
-              .x = {.quantity = "error", .unit = level_unit(result).empty() ? "1" : "N", .from_zero = true},
-              .marks = {{d.floor_rmse, true, Dash::dashed, "noise floor"}},
-              .height = 150 + 40 * static_cast<int>(std::max<std::size_t>(3, d.where.size() + 1)),
-              .half = true};
+  const std::string unit = level_unit(result).empty() ? "1" : "N";
+  Chart chart = half_chart("where", "Where the error goes: what it varies with",
+                           {.quantity = "error", .unit = unit, .from_zero = true}, {},
+                           where_sentence(d.where) +
+                               " Each point is the error that a free function of the variable would take away; on top "
+                               "the whole held-out error. These errors overlap where variables go together.");
+  chart.marks = {{d.floor_rmse, true, Dash::dashed, "noise floor"}};
   if (d.ladder.empty()) return chart;
   std::vector<std::string>& names = chart.panels[0].names;
   const auto add = [&](const std::string& model, const Rung& rung, const std::vector<Share>& shares, Stroke stroke) {
@@ -157,7 +152,7 @@ Chart candidates_chart(const DiagnosedTraces& result) {
                              "statuses need not compare: what is superseded helps alone but not beside what was added, "
                              "even where its error here is lower. Bars are one standard error, from cycle to cycle.");
   for (std::size_t k = 0; k < kStatusStrokes.size(); ++k) {
-    chart.line(std::string(status_text(static_cast<EffectStatus>(k))), kStatusStrokes[k]).bars = true;
+    chart.line(std::string(status_text(static_cast<EffectStatus>(k))), kStatusStrokes[k]);
   }
   for (const EffectFinding* finding : sorted_findings(d)) {
     const auto status = static_cast<std::size_t>(finding->status);
@@ -167,7 +162,6 @@ Chart candidates_chart(const DiagnosedTraces& result) {
     chart.x.names.push_back(finding->key);
   }
   if (!d.ladder.empty()) chart.marks.push_back({d.ladder.front().held_out_rmse, false, Dash::dotted, law_text(d)});
-  chart.height = 420;
   return chart;
 }
 
@@ -252,7 +246,7 @@ ReportSection law_section(const DiagnosedTraces& result, const Motion& motion) {
     }
   }
   if (!beside.empty()) section.heading("Found beside it");
-  section.add(value_table("parameter", shown_values(beside, motion)));
+  section.add(value_table("parameter", results_of(beside, motion)));
   for (const std::string& equation : equations) section.plain(equation);
   return section;
 }
@@ -331,14 +325,13 @@ void draw(const DiagnosedTraces& result, TraceSections& sections) {
   constexpr std::size_t kDrawnTraces = 8;
   const std::size_t count = result.traces.size(), drawn = std::min(count, kDrawnTraces);
   const auto bare = [&](const Fit& fit) { return fit.model.law() == result.diagnosis.law; };
-  const std::vector<const Fit*> models = drawn_models(result.fits, result.best, 2, bare);
-  const std::vector<const Fit*> curves = drawn_curves(models, result.rungs);
+  const DrawnLaws laws = drawn_laws(result.fits, result.best, 2, bare, result.rungs);
   for (std::size_t k = 0; k < drawn; ++k) {
     const Identification& trace = result.traces[k];
     for (ReportSection* s : sections.all()) {
       if (drawn > 1) s->heading(trace.path);
     }
-    sections.add_trace(DrawnTrace(trace, models, curves, fmt::format("t{}", k + 1), 1 / static_cast<double>(drawn), k));
+    sections.add_trace(DrawnTrace(trace, laws, fmt::format("t{}", k + 1), 1 / static_cast<double>(drawn), k));
   }
   if (count > drawn) sections.trace.plain(fmt::format("The first {} of {} traces are drawn.", drawn, count));
 }
@@ -349,9 +342,9 @@ Report report_of(const DiagnosedTraces& result, const ReportOptions& options) {
   static const Motion none;
   const Motion& motion = result.traces.empty() ? none : result.traces.front().motion;
   const Identification* one = result.traces.size() == 1 ? &result.traces.front() : nullptr;
-  Report report = titled_report(
-      "diagnosis", one != nullptr ? file_name(one->path) : fmt::format("{} traces together", result.traces.size()),
-      "Diagnosis", diagnosis_verdict(result));
+  const std::string several = fmt::format("{} traces together", result.traces.size());
+  Report report =
+      titled_report("diagnosis", one != nullptr ? file_name(one->path) : several, diagnosis_verdict(result));
   for (const Identification& trace : result.traces) {
     report.warnings.insert(report.warnings.end(), trace.warnings.begin(), trace.warnings.end());
   }
@@ -366,7 +359,6 @@ Report report_of(const DiagnosedTraces& result, const ReportOptions& options) {
   if (!result.traces.empty()) sections.trace.add(health_table(result.traces));
   add_fits(result.fits, result.best, motion, options.instruments_declared, sections.law);
   if (!result.fits.empty()) sections.law.add(profile_charts(result.fits[result.best], motion, "best"));
-  sections.add_sources();
   for (ReportSection* s : sections.all()) s->medium = Medium::page;
   report.add({traces_section(result), diagnosis_section(result, motion), law_section(result, motion), sections.trace,
               sections.law, sections.errors, sections.cycles,

@@ -10,8 +10,6 @@
 namespace tribofit {
 namespace {
 
-constexpr std::size_t kNames = 15;  // columns of names on a terminal
-
 /// What an effect needs beyond friction and velocity, in short or in full.
 std::string channels_text(const Channels& needs, bool in_full) {
   const struct {
@@ -92,7 +90,7 @@ ReportSection parameters_section(const EffectInfo& effect) {
         p.name, p.description + (own ? "; another value in each record" : "") + scaling_text(p.bound_scaling));
   }
   section.add(std::move(table));
-  section.add(ReportFacts{std::move(meanings), kNames});
+  section.add(ReportFacts{std::move(meanings)});
   return section;
 }
 
@@ -200,7 +198,7 @@ Report effect_report(const EffectInfo& effect, const Fingerprint* print, const T
                  {"needs", needs.empty() ? "friction and velocity" : "friction, velocity, " + needs}};
   if (!effect.experiment.empty()) facts.emplace_back("best shown by", effect.experiment);
   for (const EffectForm& form : effect.forms) facts.emplace_back("other form", form_text(effect, form));
-  about.add(ReportFacts{std::move(facts), kNames});
+  about.add(ReportFacts{std::move(facts)});
   for (const LookAlike& pair : effect.pairs) add_entry(pair.key, {pair.test}, alike);
   if (print != nullptr) {
     shown.plain("simulated with " + print->conditions);

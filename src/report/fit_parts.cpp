@@ -70,12 +70,13 @@ void add_protocols(std::span<const Fit> fits, const Motion& motion, ReportSectio
       for (const std::string& message : fit.messages) notes.push_back(fit.model.name() + ": " + message);
     }
     for (std::size_t k = 0; k < std::min(fit.parameters.size(), joint->parameters.size()); ++k) {
-      const FitParameter &a = fit.parameters[k], &b = joint->parameters[k];
+      const bool outside = is_outside(fit.parameters[k], joint->parameters[k]);
+      const ResultParameter a = result_of(fit.parameters[k], motion), b = result_of(joint->parameters[k], motion);
       const int places = places_of(b);
-      table.rows.push_back({k == 0 ? fit.model.name() : "", b.parameter.name, fixed(shown(a, a.value), places),
-                            fixed(shown(b, b.value), places), with_sign(100 * (a.value / b.value - 1), 1, " %"),
-                            shown_unit(b, motion), is_outside(a, b) ? "outside the 95 % interval" : ""});
-      different |= is_outside(a, b);
+      table.rows.push_back({k == 0 ? fit.model.name() : "", b.name, fixed(a.value, places), fixed(b.value, places),
+                            with_sign(100 * (a.value / b.value - 1), 1, " %"), b.unit,
+                            outside ? "outside the 95 % interval" : ""});
+      different |= outside;
     }
   }
   const bool none = table.rows.empty();
@@ -110,27 +111,20 @@ Facts model_facts(const char* name, std::span<const Fit> fits, std::size_t best,
   return facts;
 }
 
-std::vector<ShownValue> shown_values(std::span<const FitParameter> parameters, const Motion& motion) {
-  std::vector<ShownValue> values;
-  for (const FitParameter& p : parameters) {
-    values.push_back({full_name(p), shown(p, p.value), shown(p, p.std_error), shown(p, p.lower95), shown(p, p.upper95),
-                      shown_unit(p, motion), p.determined ? "" : limits_text(p), p.determined});
-  }
-  return values;
-}
-
-ReportTable value_table(const char* name, const std::vector<ShownValue>& values) {
+ReportTable value_table(const char* name, const std::vector<ResultParameter>& values) {
   std::vector<std::string> errors, parts, intervals, units;
   ReportTable table;
   table.text({name}).numbers({"value"});
-  for (const ShownValue& v : values) {
+  for (const ResultParameter& v : values) {
     const bool known = v.determined && std::isfinite(v.std_error) && v.std_error > 0;
     const int places = known ? places_for(v.std_error) : 0;
     const std::string value = known ? fixed(v.value, places) : significant(v.value, 5);
-    table.rows.push_back({v.name, v.determined ? value : "not determined"});
+    table.rows.push_back({full_name(v.name, v.effect), v.determined ? value : "not determined"});
     errors.push_back(known ? fixed(v.std_error, places) : "");
     parts.push_back(known && v.value != 0 ? "(" + percent(v.std_error / std::abs(v.value)) + ")" : "");
-    intervals.push_back(known && std::isfinite(v.lower95) ? interval_text(v.lower95, v.upper95, places) : v.limits);
+    intervals.push_back(known && std::isfinite(v.lower95) ? interval_text(v.lower95, v.upper95, places)
+                        : v.determined                    ? ""
+                                                          : limits_text(v));
     units.push_back(v.unit);
   }
   const auto some_unknown = [](std::vector<std::string> cells) {
@@ -155,23 +149,24 @@ std::string remarks_on(std::span<const FitParameter> parameters, std::span<const
 }
 
 ReportTable parameter_table(const Fit& fit, const Motion& motion, bool systematic) {
+  const std::vector<ResultParameter> values = results_of(fit.parameters, motion);
   std::vector<std::string> profiles, errors, starts, remarks;
-  for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
-    const FitParameter& p = fit.parameters[k];
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const ResultParameter& p = values[k];
     const int places = places_of(p);
     const bool profile = p.determined && std::isfinite(p.profile_lower95) && p.profile_lower95 < p.profile_upper95;
-    profiles.push_back(profile ? interval_text(shown(p, p.profile_lower95), shown(p, p.profile_upper95), places) : "");
+    profiles.push_back(profile ? interval_text(p.profile_lower95, p.profile_upper95, places) : "");
     // Nothing declared that bears on it is not the same as no uncertainty.
     errors.push_back(std::isnan(p.systematic)           ? "unknown"
-                     : p.systematic > 0 && p.determined ? fixed(shown(p, p.systematic), places)
+                     : p.systematic > 0 && p.determined ? fixed(p.systematic, places)
                      : systematic || p.systematic != 0  ? "-"
                                                         : "");
-    starts.push_back(significant(shown(p, p.start), 3));
+    starts.push_back(significant(p.start, 3));
     remarks.push_back(remarks_on(fit.parameters, fit.correlations, k));
     if (p.value == p.start && fit.protocol == Protocol::joint)
       remarks.back() += remarks.back().empty() ? "unmoved" : ", unmoved";
   }
-  ReportTable table = value_table("parameter", shown_values(fit.parameters, motion));
+  ReportTable table = value_table("parameter", values);
   table.add({"by profile", true}, std::move(profiles));
   table.add({"systematic", true}, std::move(errors));
   table.add({"start", true, 3}, std::move(starts));

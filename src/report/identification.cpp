@@ -11,46 +11,41 @@
 namespace tribofit {
 namespace {
 
-/// What is said of a fit, in the order of FitQuality: {0} the law, {1} its held-out error, {2} the noise floor, {3} its
-/// error on the cycles that were fitted, {4} its typical relative error, {5} the held-out error beside the floor.
-constexpr std::array<const char*, 7> kSentences = {
+/// What is said of a fit, in the order of FitQuality, and last where a free function finds something, whatever the
+/// noise floor: {0} the law, {1} its held-out error, {2} the noise floor, {3} its error on the cycles that were fitted,
+/// {4} its typical relative error, {5} the held-out error beside the floor, {6} its name, {7} what the rest varies
+/// with.
+constexpr std::array<const char*, 8> kSentences = {
     "",
     "{0} has a held-out error of {1}, less than the noise floor of {2}: the noise floor is overestimated here, so the "
     "data do not show whether an effect remains.",
     "{0} does not carry over to held-out cycles: its error there is {1}, and {3} on the cycles it was fitted to. Do "
-    "not "
-    "rely on its values.",
+    "not rely on its values.",
     "{0} describes this trace as well as its noise allows: the held-out error is {1}, the noise floor {2}.",
     "{0} is close (typically {4} off), but {5}: a small effect may remain.",
     "{0} describes only the general shape (typical error {4}): {5}. An effect is not modelled.",
-    "{0} does not describe this trace (typically {4} off): {5}. Do not rely on its values."};
+    "{0} does not describe this trace (typically {4} off): {5}. Do not rely on its values.",
+    "An effect is not modelled: what the {6} law leaves varies with {7}, beyond chance (held-out error {1}, noise "
+    "floor "
+    "{2}, typical error {4})."};
 
-std::string verdict_on(const Fit& fit, const std::string& unit) {
-  const auto level = [&](double value) { return significant(value, 3) + unit_behind(unit); };
+std::string verdict_on(const Identification& r) {
+  const Fit& fit = r.fits[r.best];
+  const auto level = [&](double value) { return significant(value, 3) + unit_behind(friction_unit(r.motion)); };
   const bool bare = fit.model.effects().empty();
   const std::string name = (bare ? "The " : "The law ") + fit.model.name() + (bare ? " law" : "");
   const std::string held_out = level(fit.error.held_out_rmse), floor = level(fit.floor.rmse);
-  std::string remains = "its held-out error is " + held_out;
+  std::string beside = "its held-out error is " + held_out;
   if (is_far_above_floor(fit)) {
-    remains += ", far above the noise floor of " + floor;
+    beside += ", far above the noise floor of " + floor;
   } else if (const double ratio = over_floor(fit); std::isfinite(ratio)) {
-    remains += fmt::format(", {} times the noise floor of {}", significant(ratio, 2), floor);
+    beside += fmt::format(", {} times the noise floor of {}", significant(ratio, 2), floor);
   }
-  return fmt::format(fmt::runtime(style_of(quality_of(fit), kSentences)), name, held_out, floor, level(fit.error.rmse),
-                     percent(fit.error.mean_relative), remains);
-}
-
-/// A free function finds something, whatever the noise floor.
-std::string missing(const Identification& r) {
-  const Fit& fit = r.fits[r.best];
-  const auto level = [&](double value) { return significant(value, 3) + unit_behind(friction_unit(r.motion)); };
   std::vector<std::string> phrases;
   for (const ResidualVariable variable : r.remaining) phrases.emplace_back(describe(variable).phrase);
-  return fmt::format(
-      "An effect is not modelled: what the {} law leaves varies with {}, beyond chance (held-out error {}, noise floor "
-      "{}, typical error {}).",
-      fit.model.name(), enumerated(phrases), level(fit.error.held_out_rmse), level(fit.floor.rmse),
-      percent(fit.error.mean_relative));
+  return fmt::format(fmt::runtime(phrases.empty() ? style_of(quality_of(fit), kSentences) : kSentences.back()), name,
+                     held_out, floor, level(fit.error.rmse), percent(fit.error.mean_relative), beside, fit.model.name(),
+                     enumerated(phrases));
 }
 
 /// No fit that could be relied on.
@@ -64,7 +59,7 @@ std::string verdict(const Identification& r) {
   if (!r.analysed) return "No law was fitted; what the trace does show stands above.";
   if (is_unusable(r)) return "No fit can be trusted here; the notes at the fits say why.";
   const Fit& best = r.fits[r.best];
-  std::string text = r.remaining.empty() ? verdict_on(best, friction_unit(r.motion)) : missing(r);
+  std::string text = verdict_on(r);
   std::vector<std::string> loose, open;
   for (const FitParameter& p : best.parameters) {
     if (!is_fixed(p)) loose.push_back((p.effect.empty() ? "" : p.effect + " ") + p.parameter.name);
@@ -102,18 +97,12 @@ Suggestion next_command(const Identification& r, const ReportOptions& options) {
        {true, "to see which effects can be added", "identify effects"}});
 }
 
-/// Of what the motion shows, in the order of RecordKind.
-constexpr std::array<const char*, 8> kHeadings = {
-    "Stick-slip", "Sliding",        "Points",         "Stick-slip",
-    "Motion",     "Friction alone", "Velocity steps", "Slide, hold, slide"};
-
 /// The charts of the trace in their sections.
 void draw(const Identification& result, const ReportOptions& options, TraceSections& sections) {
   constexpr std::size_t kDrawnModels = 3;
   const auto beside = [&](const Fit& fit) { return fit.protocol == result.fits[result.best].protocol; };
-  const std::vector<const Fit*> models = drawn_models(result.fits, result.best, kDrawnModels, beside);
-  const std::vector<const Fit*> curves = drawn_curves(models, result.fits);
-  const DrawnTrace drawn(result, models, curves, "t1", 1, 0, options.threads);
+  const DrawnLaws laws = drawn_laws(result.fits, result.best, kDrawnModels, beside, result.fits);
+  const DrawnTrace drawn(result, laws, "t1", 1, 0, options.threads);
   sections.add_models(drawn);
   if (options.cycles == nullptr) sections.add_cycles(drawn);
   if (options.cycles != nullptr) sections.cycles = *options.cycles;
@@ -121,8 +110,8 @@ void draw(const Identification& result, const ReportOptions& options, TraceSecti
 
 /// What the motion shows, as the text has it; a page has the same at its head.
 ReportSection motion_section(const Identification& result) {
-  ReportSection section{
-      "motion", style_of(kind_of_record(result.motion, result.segmentation), kHeadings), {}, Medium::terminal};
+  const std::string kind(to_string(kind_of_record(result.motion, result.segmentation)));
+  ReportSection section{"motion", capitalised(kind), {}, Medium::terminal};
   Facts facts = stick_slip_facts(result);
   for (auto& [name, value] : facts) {
     if (name == "frequency") value += " (+/- is one standard error, here and below)";
@@ -136,8 +125,7 @@ ReportSection motion_section(const Identification& result) {
 
 Report report_of(const Identification& result, const ReportOptions& options) {
   const bool driven = is_driven_in_steps(result.motion.kind);
-  Report report = titled_report("friction law", file_name(result.path), driven ? "Rate and state" : "Friction law",
-                                verdict(result));
+  Report report = titled_report(driven ? "rate and state" : "friction law", file_name(result.path), verdict(result));
   report.warnings = result.warnings;
   report.facts = model_facts("best law", result.fits, result.best, result.motion);
   add_facts(result, report);
@@ -155,7 +143,6 @@ Report report_of(const Identification& result, const ReportOptions& options) {
     add_fits(result.fits, result.best, result.motion, options.instruments_declared, sections.law);
     add_comparisons(result.fits, result.best, result.motion, sections.law);
     if (!result.fits.empty()) sections.law.add(profile_charts(result.fits[result.best], result.motion, "best"));
-    sections.add_sources();
     sections.errors.medium = Medium::page;
   }
   report.add({record_section(result), driven ? ReportSection{} : motion_section(result), sections.trace, sections.law,
@@ -166,7 +153,7 @@ Report report_of(const Identification& result, const ReportOptions& options) {
 
 ReportSection cycles_section(const Identification& result) {
   TraceSections sections;
-  sections.add_cycles(DrawnTrace(result, {}, {}, "t1"));
+  sections.add_cycles(DrawnTrace(result, {}, "t1"));
   return sections.cycles;
 }
 

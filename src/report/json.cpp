@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <utility>
 
 #include "campaign/described_results.hpp"
@@ -67,32 +66,23 @@ std::vector<std::vector<double>> shown_covariance(const Fit& fit) {
 
 ResultFit result_of(const Fit& fit, const Motion& motion) {
   ResultFit out;
+  static_cast<FitSummary&>(out) = fit;
   out.law = to_string(fit.model.law());
   out.protocol = to_string(fit.protocol);
   out.effects = fit.model.effect_keys();
   out.effect_names = fit.model.effect_names();
   add_parameters(fit.parameters, fit.correlations, motion, out);
   out.covariance = shown_covariance(fit);
-  out.degrees_of_freedom = fit.degrees_of_freedom;
-  out.error = fit.error;
-  out.floor = fit.floor;
-  out.explained = fit.explained;
-  out.stick_creep = fit.stick_rmse;
-  out.fastest = fit.fastest;
-  out.converged = fit.converged;
   out.conditional = is_conditional(fit);
   out.samples = fit.observations;
-  out.cycles = fit.cycles;
-  out.messages = fit.messages;
   return out;
 }
 
 Json diagnosis_json(const Diagnosis& d, const Motion& motion) {
   const auto finding = [&](const EffectFinding& f) {
     return object("key", f.key, "status", to_string(f.status), "held_out_rmse", f.held_out_rmse, "error_reduction",
-                  f.error_reduction, "p_value", f.p_value, "parameters",
-                  list_of(f.parameters, [&](const FitParameter& p) { return parameter_json(p, motion); }), "reason",
-                  f.reason, "held_out_std_error", f.held_out_std_error);
+                  f.error_reduction, "p_value", f.p_value, "parameters", json_of(results_of(f.parameters, motion)),
+                  "reason", f.reason, "held_out_std_error", f.held_out_std_error);
   };
   return object("verdict", to_string(d.verdict), "law", to_string(d.law), "rival_laws",
                 list_of(d.rival_laws, [](const Law& law) { return to_string(law); }), "from_the_start",
@@ -199,41 +189,12 @@ Json conditions_of(const Motion& motion) {
   return json;
 }
 
-ResultParameter result_of(const FitParameter& p, const Motion& motion) {
-  const auto in_unit = [&](double si) { return shown(p, si); };
-  ResultParameter out;
-  out.name = p.parameter.name;
-  out.unit = shown_unit(p, motion);
-  out.effect = p.effect;
-  out.value = in_unit(p.value);
-  out.std_error = in_unit(p.std_error);
-  out.systematic = in_unit(p.systematic);
-  out.lower95 = in_unit(p.lower95);
-  out.upper95 = in_unit(p.upper95);
-  out.profile_lower95 = in_unit(p.profile_lower95);
-  out.profile_upper95 = in_unit(p.profile_upper95);
-  if (p.range) {
-    out.range_lower = in_unit(p.range->lower);
-    out.range_upper = in_unit(p.range->upper);
-  }
-  out.start = in_unit(p.start);
-  out.lower = p.parameter.lower;
-  out.upper = p.parameter.upper;
-  out.at_bound = p.at_bound;
-  out.determined = p.determined;
-  return out;
-}
-
 void add_parameters(std::span<const FitParameter> parameters, std::span<const Correlation> correlations,
                     const Motion& motion, ResultFit& out) {
-  for (const FitParameter& p : parameters) out.parameters.push_back(result_of(p, motion));
+  out.parameters = results_of(parameters, motion);
   for (const Correlation& c : correlations) {
     out.correlations.push_back({{parameters[c.first].parameter.name, parameters[c.second].parameter.name}, c.value});
   }
-}
-
-Json parameter_json(const FitParameter& p, const Motion& motion) {
-  return json_of(result_of(p, motion));
 }
 
 Json fits_json(std::span<const Fit> fits, const Motion& motion) {

@@ -18,11 +18,8 @@ Json record_json(const Identification& trace, const JsonOptions& options);
 Json trace_json(const Identification& trace);
 /// With those of the steps, where there are several.
 Json conditions_of(const Motion& motion);
-/// In the units people read, which depend on whether friction is a force (`motion`).
-ResultParameter result_of(const FitParameter& parameter, const Motion& motion);
 void add_parameters(std::span<const FitParameter> parameters, std::span<const Correlation> correlations,
                     const Motion& motion, ResultFit& out);
-Json parameter_json(const FitParameter& parameter, const Motion& motion);
 Json fits_json(std::span<const Fit> fits, const Motion& motion);
 Json rig_json(const RigFit& rig);
 

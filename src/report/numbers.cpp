@@ -23,32 +23,48 @@ double shown(const FitParameter& parameter, double value_in_si) {
 }
 
 std::string full_name(const FitParameter& p) {
-  return p.effect.empty() ? p.parameter.name : p.effect + "." + p.parameter.name;
+  return full_name(p.parameter.name, p.effect);
 }
 
 std::string curve_name(const Fit& fit) {
   return fit.model.name() + (fit.protocol == Protocol::published ? ", " + protocol_text(fit.protocol) : "");
 }
 
-std::string limits_text(const FitParameter& p) {
-  const double lower = shown(p, p.profile_lower95), upper = shown(p, p.profile_upper95);
-  const double reach = 1e-6 * (p.parameter.upper - p.parameter.lower);
-  const bool above = lower > p.parameter.lower + reach, below = upper < p.parameter.upper - reach;
+ResultParameter result_of(const FitParameter& p, const Motion& motion) {
+  ResultParameter out{p, p.parameter.name, shown_unit(p, motion), p.effect};
+  for (double* value : {&out.value, &out.std_error, &out.lower95, &out.upper95, &out.systematic, &out.profile_lower95,
+                        &out.profile_upper95, &out.start}) {
+    *value = shown(p, *value);
+  }
+  if (p.range) out.range_lower = shown(p, p.range->lower), out.range_upper = shown(p, p.range->upper);
+  out.lower = p.parameter.lower;
+  out.upper = p.parameter.upper;
+  return out;
+}
+
+std::vector<ResultParameter> results_of(std::span<const FitParameter> parameters, const Motion& motion) {
+  std::vector<ResultParameter> results;
+  for (const FitParameter& p : parameters) results.push_back(result_of(p, motion));
+  return results;
+}
+
+std::string limits_text(const ResultParameter& p) {
+  const double lower = p.profile_lower95, upper = p.profile_upper95, reach = 1e-6 * (p.upper - p.lower);
+  const bool above = lower > p.lower + reach, below = upper < p.upper - reach;
   if (above && below) return fmt::format("{} to {}", significant(lower, 2), significant(upper, 2));
   if (above) return "at least " + significant(lower, 2);
   return below ? "at most " + significant(upper, 2) : "";
 }
 
 std::string value_text(const FitParameter& p, const Motion& motion) {
-  const std::string unit = unit_behind(shown_unit(p, motion)), limits = limits_text(p);
+  const std::string unit = unit_behind(shown_unit(p, motion)), limits = limits_text(result_of(p, motion));
   if (p.determined) return with_error(shown(p, p.value), shown(p, p.std_error)) + unit;
   return "not determined" + (limits.empty() ? "" : fmt::format(" ({}{})", limits, unit));
 }
 
-int places_of(const FitParameter& p) {
-  const double error = shown(p, p.std_error);
-  if (std::isfinite(error) && error > 0) return places_for(error);
-  const double value = std::abs(shown(p, p.value));
+int places_of(const ResultParameter& p) {
+  if (std::isfinite(p.std_error) && p.std_error > 0) return places_for(p.std_error);
+  const double value = std::abs(p.value);
   return value > 0 && std::isfinite(value) ? std::max(0, 4 - static_cast<int>(std::floor(std::log10(value)))) : 4;
 }
 

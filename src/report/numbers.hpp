@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tribofit/campaign/run_result.hpp"
 #include "tribofit/fit/fit.hpp"
 #include "tribofit/ingest/units.hpp"
 #include "tribofit/kinematics/motion.hpp"
@@ -26,14 +27,19 @@ double shown(const FitParameter& parameter, double value_in_si);
 /// "mu_s", "frictional-lag.tau".
 std::string full_name(const FitParameter& parameter);
 
+/// Parameters in the units people read, which depend on whether friction is a force (`motion`): as files have them, and
+/// tables.
+ResultParameter result_of(const FitParameter& parameter, const Motion& motion);
+std::vector<ResultParameter> results_of(std::span<const FitParameter> parameters, const Motion& motion);
+
 /// What a profile says of a parameter that is not determined: "at least 28", "at most 3"; empty where nothing.
-std::string limits_text(const FitParameter& parameter);
+std::string limits_text(const ResultParameter& parameter);
 
 /// "0.048 +/- 0.001 mm"; a number without unit has none behind it. "not determined (at least 28 1/mm)".
 std::string value_text(const FitParameter& parameter, const Motion& motion);
 
 /// Decimal places of a parameter's value: those its standard error allows, else five significant digits.
-int places_of(const FitParameter& parameter);
+int places_of(const ResultParameter& parameter);
 
 /// A curve as a legend names it: "exponential + viscous, per-cycle extremes".
 std::string curve_name(const Fit& fit);

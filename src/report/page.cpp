@@ -51,7 +51,7 @@ bool is_for_page(const Part& part) {
 }  // namespace
 
 constexpr std::string_view to_string(ReportText::Kind kind) {
-  constexpr std::string_view kKinds[] = {"plain", "soft",  "warning", "command", "heading",
+  constexpr std::string_view kKinds[] = {"plain", "soft",  "warning", "problem", "command", "heading",
                                          "item",  "title", "name",    "detail",  "drawing"};
   return style_of(kind, kKinds);
 }
@@ -60,7 +60,7 @@ TRIBOFIT_DESCRIBED(ChartAxis, quantity, unit, low, high, from_zero, logarithmic,
 TRIBOFIT_DESCRIBED(Stroke, colour, dash, symbol, width, size, joined);
 TRIBOFIT_DESCRIBED(ChartLine, name, stroke, x, y, low, high, bars, shown, panel);
 TRIBOFIT_DESCRIBED(ChartMark, at, dash, upright, text, panel);
-TRIBOFIT_DESCRIBED(HeatMap, x, y, z, quantity, unit, low, high, diverging, contours);
+TRIBOFIT_DESCRIBED(HeatMap, x, y, z, quantity, unit, low, high, diverging);
 TRIBOFIT_DESCRIBED(Stretch, from, to, shade);
 TRIBOFIT_DESCRIBED(Chart, id, title, note, height, half, x, panels, lines, map, stretches, marks);
 TRIBOFIT_DESCRIBED(ReportText, kind, text);

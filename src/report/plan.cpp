@@ -224,12 +224,10 @@ Suggestion next_after_plan(const DiagnosedTraces& diagnosed, const RunPlan& plan
 
 /// What each model predicts over a variable, with bands.
 Chart predicted_chart(const RunPlan& plan, const PredictedCurves& curves, const std::string& id, bool force) {
-  Chart chart{
-      .id = id,
-      .title = capitalised(curves.quantity) + " as each model predicts it",
-      .note = "Bands hold 95 % of the records that a model makes, with its parameters drawn within their errors.",
-      .x = {.quantity = curves.name, .unit = curves.unit},
-      .panels = {{.quantity = curves.quantity, .unit = force ? "N" : "1"}}};
+  Chart chart =
+      chart_of(id, capitalised(curves.quantity) + " as each model predicts it", {curves.name, curves.unit},
+               {curves.quantity, force ? "N" : "1"},
+               "Bands hold 95 % of the records that a model makes, with its parameters drawn within their errors.");
   for (std::size_t m = 0; m < curves.models.size() && m < plan.models.size(); ++m) {
     const PredictedCurves::OfModel& model = curves.models[m];
     ChartLine& line = chart.line("if " + model_text(plan.models[m]), stroke_of(m));

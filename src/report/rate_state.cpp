@@ -20,19 +20,20 @@ std::string chance(double p_value) {
 }
 
 ReportTable parameter_table_of(const RateStateFit& fit, const Motion& motion) {
-  std::vector<ShownValue> values = shown_values(fit.parameters, motion);
+  std::vector<ResultParameter> values = results_of(fit.parameters, motion);
   std::vector<std::string> remarks;
   for (std::size_t k = 0; k < values.size(); ++k) remarks.push_back(remarks_on(fit.parameters, fit.correlations, k));
   const Estimate& rate = fit.rate_dependence;
   if (std::isfinite(rate.value)) {
-    values.push_back({"a - b", rate.value, rate.std_error, fit.rate_dependence_lower95, fit.rate_dependence_upper95,
+    values.push_back({{rate.value, rate.std_error, fit.rate_dependence_lower95, fit.rate_dependence_upper95},
+                      "a - b",
                       friction_unit(motion)});
     remarks.emplace_back();
   }
   const double lower = fit.stiffness_ratio_lower95, upper = fit.stiffness_ratio_upper95;
   if (std::isfinite(fit.stiffness_ratio)) {
     const double std_error = fit.stiffness_ratio * 0.25 * std::log(upper / lower);
-    values.push_back({"k/k_c", fit.stiffness_ratio, std_error, lower, upper, "1"});
+    values.push_back({{fit.stiffness_ratio, std_error, lower, upper}, "k/k_c", "1"});
     remarks.push_back(critical_stiffness_text(fit));
   }
   ReportTable table = value_table("parameter", values);
@@ -56,13 +57,13 @@ void add_law(const RateStateAnalysis& analysis, std::size_t k, const Motion& mot
   }
   section.add(parameter_table_of(fit, motion));
   std::string held, wanders;
-  if (std::isfinite(fit.held_out_rmse)) held = ", on steps held out " + significant(fit.held_out_rmse, 3);
+  if (std::isfinite(fit.error.held_out_rmse)) held = ", on steps held out " + significant(fit.error.held_out_rmse, 3);
   if (fit.noise_time > 0) {
-    wanders =
-        fmt::format(", and {} that wanders over {} s", significant(fit.noise_slow, 2), significant(fit.noise_time, 2));
+    wanders = fmt::format(", and {} that wanders over {} s", significant(fit.floor.slow_noise, 2),
+                          significant(fit.noise_time, 2));
   }
-  section.soft(fmt::format("RMSE {}{}; noise of a sample {}{}.", significant(fit.rmse, 3), held,
-                           significant(fit.noise_white, 2), wanders));
+  section.soft(fmt::format("RMSE {}{}; noise of a sample {}{}.", significant(fit.error.rmse, 3), held,
+                           significant(fit.floor.noise, 2), wanders));
   for (const std::string& message : fit.messages) section.item(message);
 }
 
@@ -116,7 +117,7 @@ ReportTable each_table(const RateStateAnalysis& analysis, const Motion& motion) 
     for (const FitParameter& p : fit.parameters)
       row.push_back(p.determined ? with_error(shown(p, p.value), shown(p, p.std_error)) : "not determined");
     row.push_back(std::isfinite(fit.rate_dependence.value) ? estimate_text(fit.rate_dependence) : "-");
-    row.insert(row.end(), {significant(fit.stiffness_ratio, 3), significant(fit.rmse, 3)});
+    row.insert(row.end(), {significant(fit.stiffness_ratio, 3), significant(fit.error.rmse, 3)});
   }
   return table;
 }
@@ -142,9 +143,9 @@ void add_which_law(const RateStateAnalysis& analysis, ReportSection& section) {
   if (analysis.fits.size() != 2 || !std::isfinite(analysis.law_p_value)) return;
   const RateStateFit &best = analysis.fits[analysis.best], &other = analysis.fits[1 - analysis.best];
   const auto against = [](double a, double b) { return significant(a, 4) + " against " + significant(b, 4); };
-  std::string figures = "RMSE " + against(best.rmse, other.rmse);
-  if (std::isfinite(best.held_out_rmse) && std::isfinite(other.held_out_rmse))
-    figures += ", on steps held out " + against(best.held_out_rmse, other.held_out_rmse);
+  std::string figures = "RMSE " + against(best.error.rmse, other.error.rmse);
+  if (std::isfinite(best.error.held_out_rmse) && std::isfinite(other.error.held_out_rmse))
+    figures += ", on steps held out " + against(best.error.held_out_rmse, other.error.held_out_rmse);
   constexpr double kDistinguished = 0.05;
   const bool lacks = best.lacks.value_or(false), distinguished = analysis.law_p_value < kDistinguished;
   section.heading("Which law");
@@ -295,9 +296,8 @@ Json step_json(const RateStateAnalysis& analysis, std::size_t s, const Motion& m
   if (whole != nullptr) json["mu_0"] = estimate_of(whole->base_friction[s]);
   if (trended) json["trend"] = estimate_of(whole->trend[s], analysis.detrend == Detrend::time ? 1 : 1 / kMillimetre);
   if (own == nullptr) return json;
-  json["own_fit"] =
-      object("parameters", list_of(own->parameters, [&](const FitParameter& p) { return parameter_json(p, motion); }),
-             "rmse", own->rmse, "messages", own->messages);
+  json["own_fit"] = object("parameters", json_of(results_of(own->parameters, motion)), "rmse", own->error.rmse,
+                           "messages", own->messages);
   json["own_fit"].update(stability_json(*own));
   return json;
 }
@@ -316,6 +316,7 @@ Json healing_json(const Healing& healing) {
 Json rate_state_fits_json(const RateStateAnalysis& analysis, const Motion& motion) {
   return list_of(analysis.fits, [&](const RateStateFit& fit) {
     ResultFit out;
+    static_cast<FitSummary&>(out) = fit;
     out.law = law_name(fit.evolution);
     out.protocol = "joint";
     add_parameters(fit.parameters, fit.correlations, motion, out);
@@ -329,16 +330,7 @@ Json rate_state_fits_json(const RateStateAnalysis& analysis, const Motion& motio
     for (std::size_t i = 0; i < out.covariance.size(); ++i) {
       for (std::size_t j = 0; j < n; ++j) out.covariance[i].push_back(scale(i) * scale(j) * fit.covariance[i * n + j]);
     }
-    out.degrees_of_freedom = fit.degrees_of_freedom;
-    out.error = {fit.rmse, std::nan(""), std::nan(""), fit.held_out_rmse};
-    out.floor = {.noise = fit.noise_white,
-                 .slow_noise = fit.noise_slow,
-                 .rmse = std::hypot(fit.noise_white, fit.noise_slow),
-                 .source = "residuals"};
-    out.explained = out.stick_creep = out.fastest = std::nan("");
-    out.converged = fit.converged;
     out.samples = fit.samples;
-    out.messages = fit.messages;
     return json_of(out);
   });
 }

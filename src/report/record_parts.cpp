@@ -176,18 +176,20 @@ Facts condition_facts(const Identification& r) {
 }
 
 /// What is not in order, or that all is.
-Facts health_facts(const Motion& motion) {
-  Facts facts;
+void add_health(const Motion& motion, ReportSection& section) {
+  section.heading("Health");
+  const std::size_t before = section.items.size();
   std::size_t made = 0;
   for (const HealthItem& check : motion.health) {
     made += health_check::was_made(check.message);
-    if (check.status == HealthItem::Status::ok) continue;
-    facts.emplace_back(fmt::format("{:<8} {}", to_string(check.status), check.check), check.message);
+    const bool problem = check.status == HealthItem::Status::problem;
+    if (check.status != HealthItem::Status::ok)
+      section.text(problem ? ReportText::Kind::problem : ReportText::Kind::warning, check.check + ": " + check.message);
   }
-  if (!facts.empty()) return facts;
+  if (section.items.size() > before) return;
   const std::size_t not_made = motion.health.size() - made;
   const std::string others = not_made > 0 ? fmt::format(", {} not possible", not_made) : "";
-  return {{fmt::format("no problems found ({} checks{})", made, others), ""}};
+  section.plain(fmt::format("no problems found ({} checks{})", made, others));
 }
 
 }  // namespace
@@ -292,9 +294,7 @@ ReportSection record_section(const Identification& r) {
     conditions.emplace_back("friction", "is a force in newtons: no normal force is known");
   }
   section.add(ReportFacts{std::move(conditions)});
-  if (is_driven_in_steps(m.kind)) return section;
-  section.heading("Health");
-  section.add(ReportFacts{health_facts(m), 26});
+  if (!is_driven_in_steps(m.kind)) add_health(m, section);
   return section;
 }
 

@@ -52,42 +52,32 @@ void Report::keep_for(Medium medium) {
   for (ReportSection& section : sections) std::erase_if(section.items, elsewhere);
 }
 
-Report titled_report(const std::string& kind, const std::string& title, const std::string& made, std::string lead) {
+Report titled_report(const std::string& kind, const std::string& title, std::string lead) {
   Report report;
   report.kind = kind;
   report.title = title;
   report.subtitle =
-      fmt::format("{} by tribofit {}; ± is one standard error, everywhere in this report.", made, version);
+      fmt::format("{} by tribofit {}; ± is one standard error, everywhere in this report.", capitalised(kind), version);
   report.lead = std::move(lead);
   return report;
 }
 
-std::vector<const Fit*> drawn_models(std::span<const Fit> fits, std::size_t best, std::size_t most,
-                                     const std::function<bool(const Fit&)>& wanted) {
-  std::vector<const Fit*> models;
+DrawnLaws drawn_laws(std::span<const Fit> fits, std::size_t best, std::size_t most,
+                     const std::function<bool(const Fit&)>& wanted, std::span<const Fit> others) {
+  DrawnLaws drawn;
   for (const Fit& fit : fits) {
-    if (!fit.parameters.empty() && (&fit == &fits[best] || wanted(fit))) models.push_back(&fit);
+    if (!fit.parameters.empty() && (&fit == &fits[best] || wanted(fit))) drawn.models.push_back(&fit);
   }
-  std::ranges::stable_partition(models, [&](const Fit* fit) { return fit == &fits[best]; });
-  models.resize(std::min(models.size(), most));
-  return models;
-}
-
-std::vector<const Fit*> drawn_curves(const std::vector<const Fit*>& models, std::span<const Fit> others) {
-  std::vector<const Fit*> curves, all = models;
+  std::ranges::stable_partition(drawn.models, [&](const Fit* fit) { return fit == &fits[best]; });
+  drawn.models.resize(std::min(drawn.models.size(), most));
+  std::vector<const Fit*> all = drawn.models;
   for (const Fit& fit : others) all.push_back(&fit);
   std::set<std::string> names;
   for (const Fit* fit : all) {
-    if (!fit->parameters.empty() && fit->fastest > 0 && names.insert(curve_name(*fit)).second) curves.push_back(fit);
+    const bool is_drawn = !fit->parameters.empty() && fit->fastest > 0 && names.insert(curve_name(*fit)).second;
+    if (is_drawn) drawn.curves.push_back(fit);
   }
-  return curves;
-}
-
-void TraceSections::add_sources() {
-  if (errors.items.empty()) return;
-  errors.soft(
-      "Source of the relative error and of its line at 8 %: the disc-block study with four friction radii of 2023, "
-      "Eq 5 and Fig 12.");
+  return drawn;
 }
 
 void TraceSections::add_trace(const DrawnTrace& drawn) {
@@ -96,11 +86,6 @@ void TraceSections::add_trace(const DrawnTrace& drawn) {
 }
 
 void TraceSections::add_models(const DrawnTrace& drawn) {
-  if (drawn.trace.motion.is_points()) {
-    law.add(points_chart(drawn));
-    errors.add(error_charts(drawn));
-    return;
-  }
   if (drawn.trace.motion.size() < 2) return;
   std::vector<Chart> windows, of_errors;
   Chart of_law;  // it alone evaluates models, whose formulas must not be shared between threads

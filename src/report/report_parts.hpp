@@ -37,16 +37,8 @@ void add_comparisons(std::span<const Fit> fits, std::size_t best, const Motion& 
 /// A model and its parameters: what a reader looks for first. name: "best law"; nothing where there is no fit.
 Facts model_facts(const char* name, std::span<const Fit> fits, std::size_t best, const Motion& motion);
 
-/// A value with its errors, in the unit people read.
-struct ShownValue {
-  std::string name;
-  double value, std_error, lower95, upper95;
-  std::string unit, limits = {};  ///< limits: "at least 28", of one that is not determined
-  bool determined = true;
-};
 /// A row a value, in the digits that its error allows; columns that say nothing are left out. name: of the first one.
-ReportTable value_table(const char* name, const std::vector<ShownValue>& values);
-std::vector<ShownValue> shown_values(std::span<const FitParameter> parameters, const Motion& motion);
+ReportTable value_table(const char* name, const std::vector<ResultParameter>& values);
 /// What a reader must know of a parameter: "at bound, correlated"; empty where nothing.
 std::string remarks_on(std::span<const FitParameter> parameters, std::span<const Correlation> correlations,
                        std::size_t index);
@@ -56,14 +48,13 @@ ReportTable parameter_table(const Fit& fit, const Motion& motion, bool systemati
 /// The name of a file without its folder, as text that is valid UTF-8.
 std::string file_name(const std::string& path);
 
-/// A report that says what it is; kind: "diagnosis", made: "Diagnosis".
-Report titled_report(const std::string& kind, const std::string& title, const std::string& made, std::string lead);
+/// A report that says what it is; kind: "diagnosis".
+Report titled_report(const std::string& kind, const std::string& title, std::string lead);
 
-/// The best fit, then others that are wanted beside it; at most `most`.
-std::vector<const Fit*> drawn_models(std::span<const Fit> fits, std::size_t best, std::size_t most,
-                                     const std::function<bool(const Fit&)>& wanted);
-/// Laws that are drawn over speed: of the models beside the samples, then of others, each name once.
-std::vector<const Fit*> drawn_curves(const std::vector<const Fit*>& models, std::span<const Fit> others);
+/// Beside the samples the best fit, then others that are wanted, at most `most`; over speed these, then others, each
+/// name once.
+DrawnLaws drawn_laws(std::span<const Fit> fits, std::size_t best, std::size_t most,
+                     const std::function<bool(const Fit&)>& wanted, std::span<const Fit> others);
 
 /// Charts of one trace in the sections that a report has once.
 struct TraceSections {
@@ -71,8 +62,6 @@ struct TraceSections {
       errors{"errors", "Errors", {}}, cycles{"cycles", "Cycles and spectrum", {}};
   std::array<ReportSection*, 4> all() { return {&trace, &law, &errors, &cycles}; }
   void add_trace(const DrawnTrace& drawn);
-  /// A footnote below the errors: where their measure comes from.
-  void add_sources();
   void add_models(const DrawnTrace& drawn);  ///< all of it but the cycles
   void add_cycles(const DrawnTrace& drawn);
 };

@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "json_parts.hpp"
 #include "report_parts.hpp"
 
@@ -24,12 +22,12 @@ std::string ShownRigValue::text() const {
 namespace {
 
 ReportTable rig_table(const RigFit& rig) {
-  std::vector<ShownValue> values;
+  std::vector<ResultParameter> values;
   std::vector<std::string> systematic;
   for (const ShownRigValue& q : shown_rig(rig)) {
     const RigValue& v = q.value;
     if (!v.determined) continue;
-    values.push_back({q.name, v.value / q.si, v.std_error / q.si, v.lower95 / q.si, v.upper95 / q.si, q.unit});
+    values.push_back({{v.value / q.si, v.std_error / q.si, v.lower95 / q.si, v.upper95 / q.si}, q.name, q.unit});
     systematic.push_back(v.systematic > 0 ? significant(v.systematic / q.si, 2) : "");
   }
   ReportTable table = value_table("quantity", values);
@@ -117,7 +115,7 @@ Json rig_json(const RigFit& rig) {
 Report report_of(const RigIdentification& result, const ReportOptions& options) {
   const Identification& trace = result.trace;
   const RigFit& rig = result.rig;
-  Report report = titled_report("rig", file_name(trace.path), "Mass, damping and stiffness,", verdict_on(rig));
+  Report report = titled_report("rig", file_name(trace.path), verdict_on(rig));
   report.warnings = trace.warnings;
   report.next = {next_of(result, options)};
   add_facts(trace, report);
@@ -125,7 +123,7 @@ Report report_of(const RigIdentification& result, const ReportOptions& options) 
   values.add(rig_table(rig));
   values.add(ReportFacts{behind_rig(rig)});
   TraceSections sections;
-  if (options.charts) sections.add_trace(DrawnTrace(trace, {}, {}, "t1"));
+  if (options.charts) sections.add_trace(DrawnTrace(trace, {}, "t1"));
   sections.trace.title = "The record";
   sections.trace.add(health_table({&trace, 1}), Medium::page);
   const std::string command = command_line(words_of({"rig"}, options.arguments), options.inputs_or(trace.path));

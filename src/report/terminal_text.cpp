@@ -16,6 +16,7 @@
 namespace tribofit {
 
 constexpr std::size_t kIndent = 2, kMostRows = 40;  // of tables
+constexpr std::size_t kNames = 18;                  // columns of the names of facts
 
 namespace {
 
@@ -107,6 +108,9 @@ class TerminalText {
   /// "+/-" as the sign where it can be shown.
   std::string with_signs(const std::string& text) const { return unicode_ ? replaced(text, "+/-", "\u00b1") : text; }
   void heading(const std::string& title) { text_ += "\n" + in(kBold, with_signs(title)) + "\n"; }
+  void remark(const std::string& kind, const std::string& sentence) {
+    text_ += "  " + kind + " " + wrapped(with_signs(sentence), width_, 10) + "\n";
+  }
   void line(const std::string& sentence, std::size_t indent, std::size_t hanging) {
     text_ += std::string(indent, ' ') + wrapped(with_signs(sentence), width_, hanging) + "\n";
   }
@@ -118,7 +122,8 @@ class TerminalText {
     if (is(Text::title)) text_ += in(kBold, wrapped(with_signs(text), width_, 2)) + "\n";
     if (is(Text::heading)) heading(text);
     if (is(Text::name)) text_ += "  " + in(kBold, text) + "\n";
-    if (is(Text::warning)) text_ += "  " + in(kYellow, "warning") + " " + wrapped(with_signs(text), width_, 10) + "\n";
+    if (is(Text::warning)) remark(in(kYellow, "warning"), text);
+    if (is(Text::problem)) remark(in(kRed, "problem"), text);
     if (is(Text::command)) text_ += folded_command(text, width_) + "\n";
     if (is(Text::drawing)) text_ += "\n" + text;
     if (is(Text::detail)) line(text, 4, 4);
@@ -127,18 +132,8 @@ class TerminalText {
   }
 
   void item(const ReportFacts& facts) {
-    const std::size_t width = facts.name_width;
     for (const auto& [name, value] : facts.facts) {
-      if (value.empty()) {
-        line(name, 2, 2);
-        continue;
-      }
-      const std::string status = name.substr(0, name.find(' '));
-      std::string shown = fmt::format("{:<{}}", name, width);
-      if (status == "problem" || status == "warning") {
-        shown.replace(0, status.size(), in(status == "problem" ? kRed : kYellow, status));
-      }
-      text_ += "  " + shown + wrapped(with_signs(value), width_, width + 2) + "\n";
+      text_ += fmt::format("  {:<{}}{}\n", name, kNames, wrapped(with_signs(value), width_, kNames + 2));
     }
   }
 

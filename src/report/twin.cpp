@@ -123,11 +123,8 @@ Json twin_json(const TwinIdentification& result, const JsonOptions& options) {
 
 /// Differences in standard errors; within the marks they may be chance.
 Chart differences_chart(const Twin& twin) {
-  Chart chart{.id = "twin-differences",
-              .title = "Simulated less measured",
-              .note = fmt::format("Beyond {:g} standard errors a difference is not chance.", kTwinIsOff),
-              .x = {.quantity = "difference", .unit = "standard errors"},
-              .height = 130 + 26 * static_cast<int>(twin.measures.size())};
+  Chart chart = chart_of("twin-differences", "Simulated less measured", {"difference", "standard errors"}, {},
+                         fmt::format("Beyond {:g} standard errors a difference is not chance.", kTwinIsOff));
   const std::size_t count = twin.measures.size();  // the first stands on top
   for (std::size_t k = count; k-- > 0;) chart.panels[0].names.push_back(twin.measures[k].name);
   double largest = 4;
@@ -174,7 +171,6 @@ ReportSection motion_section(const Twin& twin, const std::string& unit) {
       "Both begin at a break-away; the simulated cycles are those of one simulation, with numbers drawn within the "
       "errors and a scatter of its own. Shaded: stick as measured.";
   chart.x.quantity = "time since break-away";
-  chart.height = 640;
   section.add(std::move(chart));
   section.add(portrait_chart("twin-portrait", "Portraits, measured and simulated", disc, motions));
   section.add(std::move(alive));
@@ -199,8 +195,7 @@ std::string to_json(const TwinIdentification& result, const JsonOptions& options
 Report report_of(const TwinIdentification& result, const ReportOptions& options) {
   const Identification& trace = result.trace;
   const Twin& twin = result.twin;
-  Report report = titled_report("twin", file_name(trace.path),
-                                "The measured motion beside those that law and rig predict,", twin_verdict(result));
+  Report report = titled_report("twin", file_name(trace.path), twin_verdict(result));
   report.warnings = trace.warnings;
   ReportSection end = result_section(report), first{"first", "", {}, Medium::terminal};
   if (const std::string warning = warning_of(result, options.arguments); !warning.empty()) {

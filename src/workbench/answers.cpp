@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "campaign/described_results.hpp"
 #include "report/charts/styles.hpp"
 #include "report/numbers.hpp"
 #include "tribofit/friction/effects/all.hpp"
@@ -65,7 +66,7 @@ Json rung_json(const WorkbenchRung& rung, const Motion& motion, bool with_parame
   json["messages"] = fit.messages;
   json["parameters"] = Json::array();
   for (std::size_t k = 0; k < fit.parameters.size(); ++k) {
-    Json parameter = parameter_json(fit.parameters[k], motion);
+    Json parameter = json_of(result_of(fit.parameters[k], motion));
     parameter["full_name"] = fit.model.parameters()[k].full_name();
     json["parameters"].push_back(std::move(parameter));
   }

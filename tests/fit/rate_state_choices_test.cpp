@@ -153,7 +153,7 @@ TEST(RateState, AllValuesHeldIsAFitToo) {
                    {"k", std::nullopt, GivenParameter::Bounds{p.stiffness, p.stiffness}}};
   const RateStateAnalysis analysis = fit_rate_state(motion_from(machine, kSteps, times_until(250, 20), 1e-4), options);
   ASSERT_TRUE(analysis.fitted()) << analysis.reason;
-  EXPECT_NEAR(analysis.fits[0].rmse, 1e-4, 5e-6);
+  EXPECT_NEAR(analysis.fits[0].error.rmse, 1e-4, 5e-6);
   EXPECT_TRUE(std::isnan(analysis.answer_p_value));
 }
 
@@ -276,8 +276,8 @@ TEST(RateState, ErrorsAreThoseOfTheSamples) {
   const Motion motion = motion_from(machine_of(StateEvolution::ageing, 5), kSteps, times_until(250, 200), 2e-4);
   const RateStateAnalysis analysis = fit_rate_state(motion, together());
   ASSERT_TRUE(analysis.fitted()) << analysis.reason;
-  EXPECT_NEAR(analysis.fits[0].rmse, 2e-4, 3e-6);
-  EXPECT_NEAR(analysis.fits[0].held_out_rmse, 2e-4, 3e-6);
+  EXPECT_NEAR(analysis.fits[0].error.rmse, 2e-4, 3e-6);
+  EXPECT_NEAR(analysis.fits[0].error.held_out_rmse, 2e-4, 3e-6);
 }
 
 }  // namespace tribofit

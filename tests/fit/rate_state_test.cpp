@@ -88,8 +88,8 @@ TEST(RateState, StepsUpAndDownGiveTheirTruthBack) {
     EXPECT_LT(fit.rate_dependence_upper95, 0);
     EXPECT_NEAR(fit.stiffness_ratio, 5, 0.5);
     EXPECT_NEAR(analysis.reference_speed, 2e-6, 1e-12);
-    EXPECT_LT(fit.held_out_rmse, 2.3e-4);
-    EXPECT_NEAR(fit.noise_white, 2e-4, 1e-5);
+    EXPECT_LT(fit.error.held_out_rmse, 2.3e-4);
+    EXPECT_NEAR(fit.floor.noise, 2e-4, 1e-5);
   }
 }
 
@@ -119,7 +119,8 @@ TEST(RateState, SwingsAreFollowedStepByStep) {
       fit_rate_state(motion_from(machine, phases, times_until(280, 10), 2e-4, 2e-6), options);
   ASSERT_TRUE(analysis.fitted()) << analysis.reason;
   expect_recovered(analysis.fits[0], machine, 0.03, 0.05);
-  EXPECT_LT(analysis.fits[0].held_out_rmse, 2.3e-4);  // of a step that is held out, too: it swings from those before it
+  // Of a step that is held out, too: it swings from those before it.
+  EXPECT_LT(analysis.fits[0].error.held_out_rmse, 2.3e-4);
 }
 
 TEST(RateState, FrictionThatRisesWithSpeedIsStableOnAnyMachine) {

@@ -14,6 +14,7 @@
 
 #include "../folder.hpp"
 #include "drawn_svg.hpp"
+#include "report/pictures/text.hpp"
 #include "tribofit/ingest/input_error.hpp"
 
 namespace tribofit {
@@ -156,6 +157,7 @@ TEST_F(Pictures, NamesAreShownAsTheyAre) {
   Chart chart = straight_chart();
   chart.lines[0].name = kAwkward;
   chart.panels[0].quantity = "50% `d` $H \\a it's a_b {";
+  chart.panels[0].part = 2;  // room for it on one line
   chart.marks = {{3, true, Dash::dotted, "it's `here` {"}, {2, false, Dash::dotted, "a \\ 100%"}};
   const std::string svg = svg_of(chart);
   EXPECT_THAT(texts_of(svg), AllOf(Contains(kAwkward), Contains("50% `d` $H \\a it's a_b { [mm/s2]"),
@@ -209,9 +211,11 @@ TEST_F(Pictures, AMapHasABoxForEachCellAndNoneForNaN) {
     const auto channel = [&](std::size_t k) { return std::stoi((*it)[k], nullptr, 16); };
     lightness.push_back(0.2126 * channel(1) + 0.7152 * channel(2) + 0.0722 * channel(3));
   }
-  ASSERT_EQ(lightness.size(), 5u);
-  EXPECT_TRUE(std::is_sorted(lightness.begin(), lightness.end()));  // the values rise in this order
-  EXPECT_GT(lightness.back() - lightness.front(), 150);
+  const auto steps = static_cast<std::size_t>(sizes.colour_steps);
+  ASSERT_EQ(lightness.size(), 5u + steps);                                // then those of the box beside the map
+  EXPECT_TRUE(std::is_sorted(lightness.begin(), lightness.begin() + 5));  // the values rise in this order
+  EXPECT_TRUE(std::is_sorted(lightness.begin() + 5, lightness.end()));
+  EXPECT_GT(lightness[4] - lightness[0], 150);
   EXPECT_THAT(texts_of(svg), AllOf(Contains("amplitude [mm]"), Contains("speed [mm/s]"), Contains("damping [1]")));
 }
 

@@ -40,18 +40,12 @@ struct RunRecord {
 };
 
 /// A parameter of a stored fit, in `unit`. What is not known is NaN.
-struct ResultParameter {
-  std::string name, unit;
-  std::string effect;  ///< key; empty for the base law
-  double value = 0;
-  double std_error = 0;             ///< statistical, from cycle to cycle of the run
-  double systematic = 0;            ///< standard uncertainty from the declared instruments; 0 where none is declared
-  double lower95 = 0, upper95 = 0;  ///< statistical 95 % interval
-  double profile_lower95 = 0, profile_upper95 = 0;
+struct ResultParameter : FittedValue {
+  std::string name = {}, unit = {};
+  std::string effect = {};  ///< key; empty for the base law
   double range_lower = std::numeric_limits<double>::quiet_NaN(),
-         range_upper = range_lower;        ///< see FitParameter::range
-  double start = 0, lower = 0, upper = 0;  ///< where the search began, and its bounds
-  bool at_bound = false, determined = true;
+         range_upper = range_lower;  ///< see FitParameter::range
+  double lower = 0, upper = 0;       ///< bounds of the search
 
   /// Its error is known, and it is not on a bound.
   bool has_error() const { return std_error > 0 && std_error < std::numeric_limits<double>::infinity() && !at_bound; }
@@ -63,7 +57,7 @@ inline std::string full_name(const std::string& name, const std::string& effect)
 }
 
 /// A stored fit. What is not known is NaN.
-struct ResultFit {
+struct ResultFit : FitSummary {
   struct Correlated {
     std::array<std::string, 2> parameters;
     double value = 0;
@@ -74,14 +68,8 @@ struct ResultFit {
   std::vector<ResultParameter> parameters;
   std::vector<Correlated> correlations;         ///< those above 0.9 in size
   std::vector<std::vector<double>> covariance;  ///< statistical, in the units of the parameters; empty: not known
-  double degrees_of_freedom = 1;                ///< of the t distribution of the statistical errors
-  ErrorFigures error;
-  Floor floor;
-  double explained = 0;
-  double stick_creep = 0, fastest = 0;  ///< [m/s]
-  bool converged = false, conditional = false;
-  std::size_t samples = 0, cycles = 0;
-  std::vector<std::string> messages;
+  bool conditional = false;
+  std::size_t samples = 0;
 };
 
 /// The result of one run as its file has it: made of an analysis, or read back.

@@ -62,24 +62,28 @@ struct ProfilePoint {
   double value = 0, rise = 0;
 };
 
-/// A parameter with its uncertainty. SI; parameter.si converts to the unit people read.
-struct FitParameter {
-  Parameter parameter;  ///< name, unit and bounds
-  std::string effect;   ///< key; empty for the base law
+/// A fitted value with what is known of its error.
+struct FittedValue {
   double value = 0;
   double std_error = 0;                             ///< statistical, from cycle to cycle; infinite where not determined
   double lower95 = 0, upper95 = 0;                  ///< statistical 95 % interval; infinite where not determined
   double systematic = 0;                            ///< standard uncertainty from the declared instruments and the
                                                     ///< clocks; NaN: not known; 0: nothing is declared
   double profile_lower95 = 0, profile_upper95 = 0;  ///< NaN unless asked for or not determined by itself
-  std::vector<ProfilePoint> profile;                ///< by value, from twice the half-width below to twice above; empty
-                                                    ///< unless asked for
-  /// Interval over all models that these data do not distinguish; none where there is one model only.
-  std::optional<GivenParameter::Bounds> range = {};
-  double start = 0;
+  double start = 0;                                 ///< where the search began
   bool at_bound = false;
   /// false: the data fix only a combination of it with others, or nothing of it within its bounds; a message says so.
   bool determined = true;
+};
+
+/// A parameter with its uncertainty. SI; parameter.si converts to the unit people read.
+struct FitParameter : FittedValue {
+  Parameter parameter;                ///< name, unit and bounds
+  std::string effect;                 ///< key; empty for the base law
+  std::vector<ProfilePoint> profile;  ///< by value, from twice the half-width below to twice above; empty unless asked
+                                      ///< for
+  /// Interval over all models that these data do not distinguish; none where there is one model only.
+  std::optional<GivenParameter::Bounds> range = {};
 };
 
 /// What the model leaves, over slip samples and break-aways (see Observations).
@@ -106,33 +110,35 @@ struct Correlation {
   double value = 0;
 };
 
-/// One fitted model. A fit that fails says why in `messages` and has converged == false.
-struct Fit {
+/// How a fit came out. One that fails says why in `messages` and has converged == false.
+struct FitSummary {
+  ErrorFigures error;
+  Floor floor;
+  double explained = 0;   ///< share of the error above the noise floor that is explained, against constant friction
+  double fastest = 0;     ///< the data reach up to this |v_r| [m/s]
+  double stick_rmse = 0;  ///< with presliding: creep velocity in stick, measured against model [m/s]; else NaN
+  double degrees_of_freedom = 1;  ///< of the t distribution of the statistical errors
+  std::size_t cycles = 0;
+  bool converged = false;
+  std::vector<std::string> messages;
+};
+
+/// One fitted model.
+struct Fit : FitSummary {
   FrictionModel model{ExponentialLaw{}};
   Protocol protocol = Protocol::joint;
   std::vector<FitParameter> parameters;
-  ErrorFigures error;
-  Floor floor;
-  double constant_rmse = 0;  ///< what a constant |friction| would leave [1 or N]
-  double explained =
-      0;  ///< share of the error above the noise floor that the model explains, against constant friction
-  bool converged = false;
-  std::size_t observations = 0;  ///< samples
-  std::size_t cycles = 0;
-  double stick_rmse =
-      0;  ///< laws with presliding: creep velocity in stick, measured against model [m/s]; NaN otherwise
-  double mean_load = 1, mean_temperature = 0;        ///< N0 [N] and T0 [degC] to which the parameters refer
-  double disc_speed = 0;                             ///< mean omega of the slips [rad/s]; 0 where it is not known
-  double fastest = 0;                                ///< the data reach up to this |v_r| [m/s]
-  double slowest = 0;                                ///< and down to this one; 0 where slips begin in stick [m/s]
-  double degrees_of_freedom = 1;                     ///< of the t distribution of the statistical errors
-  std::vector<Correlation> correlations;             ///< those above 0.9 in size, largest first
-  std::vector<double> covariance;                    ///< of the values (SI), row by row, statistical
-  std::vector<double> cycle_squares;                 ///< held-out sum of squares of each cycle
-  std::vector<double> cycle_counts;                  ///< residuals of each cycle
+  double constant_rmse = 0;                    ///< what a constant |friction| would leave [1 or N]
+  std::size_t observations = 0;                ///< samples
+  double mean_load = 1, mean_temperature = 0;  ///< N0 [N] and T0 [degC] to which the parameters refer
+  double disc_speed = 0;                       ///< mean omega of the slips [rad/s]; 0 where it is not known
+  double slowest = 0;                     ///< the data reach down to this |v_r|; 0 where slips begin in stick [m/s]
+  std::vector<Correlation> correlations;  ///< those above 0.9 in size, largest first
+  std::vector<double> covariance;         ///< of the values (SI), row by row, statistical
+  std::vector<double> cycle_squares;      ///< held-out sum of squares of each cycle
+  std::vector<double> cycle_counts;       ///< residuals of each cycle
   std::vector<std::vector<double>> fold_parameters;  ///< values (SI) fitted with each fold held out
   std::vector<std::size_t> cycle_folds;              ///< fold in which each cycle was held out
-  std::vector<std::string> messages;
 
   std::vector<double> values() const;
   /// Of two parameters, from the covariance; NaN where one of them has no error.

@@ -58,7 +58,13 @@ struct VelocityStep {
 };
 
 /// Rate-and-state friction fitted to steps together (`step` is empty) or to one of them.
-struct RateStateFit {
+struct RateStateFit : FitSummary {
+  RateStateFit() {
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    error = {0, unknown, unknown, unknown};
+    explained = stick_rmse = fastest = unknown;
+    floor.source = "residuals";
+  }
   StateEvolution evolution = StateEvolution::ageing;
   std::optional<std::size_t> step;
   std::size_t states = 1;                ///< state variables
@@ -73,19 +79,12 @@ struct RateStateFit {
          stiffness_ratio_upper95 = 0;
   std::vector<Estimate> base_friction;  ///< mu_0 of each step of the fit, at v0 and at the time of the step
   std::vector<Estimate> trend;          ///< slope of the line taken off [1/m or 1/s]
-  double rmse = 0;                      ///< of the samples that were fitted [1]
-  double noise_white = 0;               ///< scatter of a sample in what is left [1]
-  double noise_slow = 0;                ///< and of what wanders in it [1], over a time of
-  double noise_time = 0;                ///< [s]; 0: nothing wanders
+  double noise_time = 0;                ///< over which what is left wanders by floor.slow_noise [s]; 0: it does not
   /// It leaves more behind the steps than elsewhere, and noise alone would not; nothing where that cannot be judged.
   std::optional<bool> lacks;
-  double held_out_rmse = std::numeric_limits<double>::quiet_NaN();  ///< steps that were left out of the fit
-  double degrees_of_freedom = 1;
   std::size_t samples = 0;
   std::vector<double> time_std_error;     ///< of each step of the fit [s]; NaN: its time was not fitted
   std::vector<Correlation> correlations;  ///< above 0.9 in size
-  std::vector<std::string> messages;
-  bool converged = false;
 };
 
 /// One hold.

@@ -48,16 +48,8 @@ std::string comparison_csv(const ComparisonReport& report, std::span<const Poole
 /// The same as the JSON object {"path", "values", "unmatched", "relative_error", "law_preference"}, for summary.json.
 std::string comparison_json(const ComparisonReport& report, std::span<const PooledGroup> groups);
 
-/// Writes what Fig 5 to 12 of [D] show, from the runs of a campaign, into figures/ in the folder of its results:
-///
-/// 05-rms-velocity.csv     RMS of the velocity of the block: mean over repeats and its standard error
-/// 06-08-three-cycles.csv  v_r and friction over time
-/// 07-spectrum.csv         amplitude spectrum of v_r
-/// 07-harmonics.csv        amplitude of the fundamental of v_r and of its multiples
-/// 09-static-kinetic.csv   mu_s, mu_k and their difference: mean over repeats, standard error, each law and protocol
-/// 10-12-over-velocity.csv measured and fitted friction and relative error (Eq 5) in bins of v_r, each law and protocol
-/// 12-relative-error.csv   the same over all slip samples, with the share below 0.08
-///
+/// Writes what Fig 5 to 12 of [D] show, from the runs of a campaign, into figures/ in the folder of its results: the
+/// tables that tools/help/campaign.txt lists.
 /// A row begins with the run (or the number of runs) and its conditions; units stand in the names of the columns.
 /// Each file appears whole or not at all. `runs` are those of `results`, `groups` their repeats. Throws WriteError.
 /// Cost: linear in runs; memory does not grow with them.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -40,7 +41,7 @@ struct ChartAxis {
   bool from_zero = false;
   bool logarithmic = false;
   std::vector<std::string> names = {};  ///< of the values 0, 1, 2 ... where the axis counts things
-  double part = 1;                      ///< height of a panel beside that of the others
+  double part = 1;                      ///< height of a panel without names, in 150 pixels of the page
 };
 
 /// A line or points; with `low` and `high` also what is uncertain about it.
@@ -57,9 +58,10 @@ struct ChartLine {
     x.push_back(at);
     y.push_back(value);
   }
-  /// With its error to either side; one that is not known has no length.
+  /// With its error to either side as a bar; one that is not known has no length.
   void add(double at, double value, double error) {
     add(at, value);
+    bars = true;
     low.push_back(error > 0 ? value - error : value);
     high.push_back(error > 0 ? value + error : value);
   }
@@ -88,8 +90,8 @@ struct HeatMap {
   std::vector<std::vector<double>> z = {};  ///< rows; NaN: nothing there
   std::string quantity = {}, unit = {};
   double low = kFromData, high = kFromData;
-  bool diverging = false;  ///< it has both signs: pale at zero, the middle of the scale
-  bool contours = false;   ///< lines of equal value, with their values
+  /// It has both signs: pale at zero, the middle of the scale. Others have lines of equal value on the page.
+  bool diverging = false;
 };
 
 struct Chart {
@@ -102,8 +104,17 @@ struct Chart {
   std::optional<HeatMap> map = {};  ///< under the lines
   std::vector<Stretch> stretches = {};
   std::vector<ChartMark> marks = {};
-  int height = 340;   ///< on the page [CSS pixels]
   bool half = false;  ///< stands beside its neighbour where the page is wide
+
+  /// What panels and names take on the page [CSS pixels].
+  int height() const {
+    double sum = x.names.empty() ? 140 : 240;
+    for (const ChartAxis& panel : panels) {
+      const auto names = static_cast<double>(panel.names.size());
+      sum += names > 0 ? 26 * std::max(4.0, names) : 150 * panel.part;
+    }
+    return static_cast<int>(sum);
+  }
 
   /// A line without points yet; a report leaves out lines that get none.
   ChartLine& line(std::string name, const Stroke& stroke, std::size_t panel = 0) {

@@ -15,17 +15,11 @@ struct JsonOptions {
   std::vector<std::string> arguments;  ///< of the command line, echoed under tool.arguments
 };
 
-/// The result of one trace as JSON, for programs.
-///
-/// {"tool", "trace", "conditions", "health", "stick_slip", "fits", "best", "warnings"}; every number in the unit its
-/// name or its "unit" says. What is not known is null. Both protocols are in "fits". Keys may be added in later
-/// versions, none changes. Conditions that differ between the steps of a trace are null there and listed under "steps".
+/// The result of one trace as JSON, for programs, as data/schema/tribofit.schema.json describes it. Keys may be added
+/// in later versions, none changes.
 std::string to_json(const Identification& result, const JsonOptions& options = {});
 
 /// As above with "diagnosis"; the fits are those of the diagnosis: the bare laws, then the final model.
-///
-/// Of several traces diagnosed together "trace" becomes "traces", a list as "conditions" and "stick_slip" are, items of
-/// "health" carry the index of their trace, and parameters, all shared, carry "trace": null.
 std::string to_json(const DiagnosedTraces& result, const JsonOptions& options = {});
 
 /// {"tool", "trace", "conditions", "health", "stick_slip", "rig", "analysed", "warnings"}, where "rig" has mass_kg,
@@ -41,8 +35,7 @@ std::string to_json(const RigIdentification& result, const JsonOptions& options 
 /// "next"}.
 std::string to_json(const TwinIdentification& result, const JsonOptions& options = {});
 
-/// As of the diagnosis, with "plan": {"question", "models", "own", "experiments", "usual_means", "hopeless",
-/// "not_asked", "reason", "next"}; every number in the unit its name says.
+/// As of the diagnosis, with "plan".
 std::string plan_json(const DiagnosedTraces& diagnosed, const RunPlan& plan, const JsonOptions& options = {});
 
 }  // namespace tribofit

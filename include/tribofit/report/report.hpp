@@ -29,6 +29,7 @@ struct ReportText {
     plain,
     soft,
     warning,
+    problem,
     command,
     heading,
     item,
@@ -46,7 +47,6 @@ using Facts = std::vector<std::pair<std::string, std::string>>;
 
 struct ReportFacts {
   Facts facts = {};
-  std::size_t name_width = 18;  ///< columns of a terminal
 };
 
 /// A column of a table: what stands above it and how it is set.

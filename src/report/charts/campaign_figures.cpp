@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -42,7 +41,7 @@ class MeansChart {
     const bool alone = over_.series.size() == 1;
     std::size_t k = 0;
     for (const OverConditions::Series& series : over_.series) {
-      ChartLine& line = bars(alone || series.name.empty() ? name : name + ", " + series.name, marked(kind));
+      ChartLine& line = new_line(alone || series.name.empty() ? name : name + ", " + series.name, marked(kind));
       if (!alone) line.stroke.dash = stroke_of(k++).dash;
       for (std::size_t i = 0; i < series.groups.size(); ++i) {
         const Maybe measure = value(series.groups[i]);
@@ -51,13 +50,15 @@ class MeansChart {
     }
     return *this;
   }
-  MeansChart& measure(const std::string& name, const char* measure) {
-    return add(name, 0, [&](std::size_t g) { return pooled_mean(of_.groups[g].measures, measure); });
+  /// The measure of that name, and earlier values of it.
+  MeansChart& measure(const char* measure) {
+    add("this campaign", 0, [&](std::size_t g) { return pooled_mean(of_.groups[g].measures, measure); });
+    return earlier(measure);
   }
   /// The earlier values of that name, one for each of the conditions.
   MeansChart& earlier(const std::string& name) {
     if (of_.earlier == nullptr) return *this;
-    ChartLine& line = bars(of_.earlier_name(), dots(Colour::red, Symbol::cross, 9));
+    ChartLine& line = new_line(of_.earlier_name(), dots(Colour::red, Symbol::cross, 9));
     std::vector<bool> met(of_.groups.size(), false);
     for (const ComparedValue& v : of_.earlier->values) {
       if (v.earlier.name != name || met[v.group]) continue;
@@ -66,18 +67,14 @@ class MeansChart {
     }
     return *this;
   }
-  Chart chart(int height, const std::string& note = "") const {
-    Chart out = chart_;
-    out.height = height;
-    out.note += note;
-    return out;
+  Chart chart(const std::string& note = "") {
+    chart_.note += note;
+    return std::move(chart_);
   }
 
  private:
-  ChartLine& bars(const std::string& name, const Stroke& stroke) {
-    ChartLine& line = chart_.line(name, stroke, chart_.panels.size() - 1);
-    line.bars = true;
-    return line;
+  ChartLine& new_line(const std::string& name, const Stroke& stroke) {
+    return chart_.line(name, stroke, chart_.panels.size() - 1);
   }
 
   const DrawnCampaign& of_;
@@ -110,7 +107,7 @@ Chart levels_chart(const DrawnCampaign& campaign, const OverConditions& over) {
   }
   chart.panel("mu_{s} - mu_{k}", unit);
   add_kinds([&](const PooledGroup& group, const auto& fit) { return Maybe{drop_of(campaign.runs, group, fit)}; });
-  return chart.chart(560);
+  return chart.chart();
 }
 
 /// What laws have besides mu_s and mu_k (the rest of Table 4 of [D]): a panel each, both protocols.
@@ -129,8 +126,7 @@ Chart other_parameters_chart(const DrawnCampaign& campaign, const OverConditions
     chart.add(protocol_text(Protocol::published), 1, value_by(Protocol::published)).earlier(other.name);
     names.push_back(fmt::format("{} of the {} law", other.name, other.law));
   }
-  return chart.chart(110 + 180 * std::max(1, static_cast<int>(names.size())),
-                     fmt::format(" From top to bottom: {}.", fmt::join(names, ", ")));
+  return chart.chart(fmt::format(" From top to bottom: {}.", fmt::join(names, ", ")));
 }
 
 /// A chart with a panel for each of the groups shown; add: from the figures of a run to a line.
@@ -154,7 +150,6 @@ Chart panels_of_groups(const DrawnCampaign& campaign, const char* id, const char
     from.push_back(fmt::format("{} ({})", conditions, drawn->run));
   }
   if (!from.empty()) chart.note = fmt::format("From top to bottom: {}.", fmt::join(from, "; "));
-  chart.height = 110 + 120 * static_cast<int>(std::max<std::size_t>(1, chart.panels.size()));
   return chart;
 }
 
@@ -228,24 +223,21 @@ ReportSection motion_figures(const DrawnCampaign& campaign) {
   const OverConditions over(campaign.groups);
   section.add(MeansChart(campaign, over, "fig05-rms-velocity", "RMS velocity of the block")
                   .panel("RMS of v_{b}", "mm/s")
-                  .measure("RMS of v_b", "rms_velocity")
-                  .chart(340));
+                  .measure("rms_velocity")
+                  .chart());
   section.add(cycles_chart(campaign, "fig06-velocity", "Relative velocity over three cycles",
                            {.quantity = "v_{r}", .unit = "mm/s"}, &RunFigures::velocity));
   section.add(spectrum_chart(campaign));
-  const std::string own = "this campaign";
   section.add(
       MeansChart(campaign, over, "fig07-fundamental", "Stick-slip frequency and amplitude")
           .panel("frequency", "Hz")
-          .measure(own, "frequency")
-          .earlier("frequency")
+          .measure("frequency")
           .panel("fundamental", "mm/s")
-          .add(own, 0,
+          .add("this campaign", 0,
                [&](std::size_t g) { return fundamental_of(campaign.results, campaign.runs, campaign.groups[g]); })
           .panel("peak of v_{r}", "mm/s")
-          .measure(own, "amplitude")
-          .earlier("amplitude")
-          .chart(600, " The fundamental is the amplitude of the sine of that frequency in v_r."));
+          .measure("amplitude")
+          .chart(" The fundamental is the amplitude of the sine of that frequency in v_r."));
   section.add(cycles_chart(campaign, "fig08-friction", "Friction over three cycles",
                            {.quantity = "mu", .unit = campaign.friction_unit()}, &RunFigures::friction));
   section.add(levels_chart(campaign, over));
@@ -279,7 +271,6 @@ Chart scatter_chart(const DrawnCampaign& campaign, const std::string& law) {
     std::string name, unit;
     for (std::size_t k = 0; k < campaign.shown.size(); ++k) {
       ChartLine& line = chart.line(conditions_text(campaign.groups[campaign.shown[k]]), marked(k, false), p);
-      line.bars = true;
       const std::vector<std::size_t>& runs = campaign.groups[campaign.shown[k]].runs;
       for (const std::size_t i : thinned(runs.size(), chart_detail.runs)) {
         const RunResult& run = campaign.runs[runs[i]];
@@ -295,7 +286,6 @@ Chart scatter_chart(const DrawnCampaign& campaign, const std::string& law) {
     }
     if (!name.empty()) chart.panels.push_back({.quantity = with_subscript(name), .unit = unit});
   }
-  chart.height = 110 + 130 * static_cast<int>(chart.panels.size());
   return chart;
 }
 

@@ -26,6 +26,16 @@ constexpr std::array<BranchStyle, 3> kBranches = {
     BranchStyle{"slowing down", {Colour::red, Dash::dashed, Symbol::triangle_down, 1.6, 5}},
     BranchStyle{"slip", {Colour::blue, Dash::solid, Symbol::circle, 1.6, 5}}};
 
+const char* note_on_law(bool points) {
+  return points
+             ? "Points as measured, with their standard errors where they are stated. Bands of the laws: 95 % "
+               "interval. Below: what the best law leaves, in units of the noise floor."
+             : "Bands of the measurement: 5 to 95 % of the cycles. Bands of the laws: 95 % interval. Below: what each "
+               "law leaves, in units of the noise floor. A law with effects is drawn along the slips, through both "
+               "branches; its line of steady sliding, at the start of the record and over a turn of the disc, can "
+               "be switched on.";
+}
+
 /// Adds a band over cycles, or its middle alone; speeds come in m/s.
 ChartLine& add_band(const std::string& name, const CycleBand& band, bool whole, const Stroke& stroke, Chart& chart) {
   ChartLine& line = chart.line(name, stroke);
@@ -53,9 +63,9 @@ Stroke on_branch(std::size_t model, Branch branch, double width) {
   return stroke;
 }
 
-/// Whether what a model says along the slips is more than a function of the speed.
-bool has_loop(const Fit& fit) {
-  return !fit.model.effects().empty();
+/// Whether what a model says along the slips is more than a function of the speed; points have no slips.
+bool has_loop(const DrawnTrace& d, const Fit& fit) {
+  return !fit.model.effects().empty() && !d.trace.motion.is_points();
 }
 
 /// Bands over speed: of the measurement, of what each model leaves, then of what each says, where that is a loop.
@@ -63,7 +73,7 @@ std::vector<std::vector<BranchBand>> bands_of(const DrawnTrace& d) {
   const std::size_t models = d.models.size();
   std::vector<std::vector<BranchBand>> bands(1 + 2 * models);
   run_tasks(bands.size(), d.threads, [&](std::size_t k) {
-    if (k > models && !has_loop(*d.models[k - 1 - models])) return;
+    if (k > models && !has_loop(d, *d.models[k - 1 - models])) return;
     bands[k] = bands_over_speed(d.trace.motion, d.pieces,
                                 k == 0        ? d.trace.motion.friction
                                 : k <= models ? residuals_of(d, k - 1)
@@ -83,13 +93,15 @@ void add_break_aways(const DrawnTrace& d, Chart& chart) {
   for (const std::size_t k : drawn_samples(levels, d.bins(chart_detail.break_aways))) line.add(0, levels[k]);
 }
 
-/// The law of a fit with its band.
-void add_curve(const Fit& fit, const Curve& curve, const Stroke& stroke, bool shown, Chart& chart,
-               const std::string& more = "") {
-  ChartLine& line = chart.line(curve_name(fit) + more, stroke);
-  line.x = in_unit(curve.velocity, kMillimetre), line.y = curve.mu;
-  line.low = curve.lower95, line.high = curve.upper95;
-  line.shown = shown;
+/// The law of a fit with its band: from rest to a quarter beyond the fastest slip, or in equal ratios of the speeds.
+Curve curve_over(const DrawnTrace& d, const ChartAxis& speed, const Fit& fit) {
+  if (!speed.logarithmic) return curve_of(fit, chart_detail.curve_points, d.threads);
+  std::vector<double> speeds;
+  for (std::size_t k = 0; k < chart_detail.curve_points; ++k) {
+    const double part = static_cast<double>(k) / (chart_detail.curve_points - 1.0);
+    speeds.push_back(kMillimetre * d.slowest * std::pow(d.fastest / d.slowest, part));
+  }
+  return law_curve(fit, speeds, d.threads);
 }
 
 /// Those that no model beside the samples has can be switched on.
@@ -98,29 +110,15 @@ void add_curves(const DrawnTrace& d, Chart& chart) {
     const auto beside = std::find(d.models.begin(), d.models.end(), fit);
     const bool is_beside = beside != d.models.end();
     const auto k = static_cast<std::size_t>(beside - d.models.begin());
-    const bool looped = is_beside && has_loop(*fit);
+    const bool looped = is_beside && has_loop(d, *fit);
     Stroke stroke = is_beside ? model_stroke(k) : kPublished;
     if (looped) stroke.dash = Dash::dotted;
-    add_curve(*fit, curve_of(*fit, chart_detail.curve_points, d.threads), stroke, is_beside && !looped, chart,
-              looped ? ", steady sliding" : "");
+    const Curve curve = curve_over(d, chart.x, *fit);
+    ChartLine& line = chart.line(curve_name(*fit) + (looped ? ", steady sliding" : ""), stroke);
+    line.x = in_unit(curve.velocity, kMillimetre), line.y = curve.mu;
+    line.low = curve.lower95, line.high = curve.upper95;
+    line.shown = is_beside && !looped;
   }
-}
-
-/// A chart of friction without a line yet.
-Chart friction_chart(const DrawnTrace& d, const char* note, bool logarithmic) {
-  return {.id = d.id + "-law",
-          .title = "Friction over relative velocity",
-          .note = note,
-          .x = {.quantity = "relative velocity |v_{r}|", .unit = "mm/s", .logarithmic = logarithmic},
-          .panels = {friction_axis(d.trace.motion, 1.35)},
-          .height = 560};
-}
-
-/// Below it what the laws leave.
-void add_residual_panel(Chart& chart) {
-  chart.panels.push_back({"residual / noise floor", "1"});
-  chart.marks.push_back({2, false, Dash::dotted, "+2 noise floors", 1});
-  chart.marks.push_back({-2, false, Dash::dotted, "−2 noise floors", 1});
 }
 
 /// Values of every point over its speed, with their standard errors where there are any.
@@ -129,13 +127,12 @@ void add_points(const DrawnTrace& d, const std::vector<double>& values, const st
   for (const int sign : {1, -1}) {
     ChartLine& line = sign > 0 ? chart.line("measured, forwards", dots(Colour::blue, Symbol::circle), panel)
                                : chart.line("measured, backwards", dots(Colour::red, Symbol::square), panel);
-    line.bars = !std_errors.empty();
     for (const Cycle& cycle : d.trace.segmentation.cycles) {
       if (cycle.direction != sign) continue;
       for (std::size_t i = cycle.slip.begin; i < cycle.slip.end; ++i) {
         const double speed = std::abs(d.trace.motion.relative_velocity[i]) / kMillimetre;
         const double value = sign * values[i];
-        line.bars ? line.add(speed, value, std_errors[i]) : line.add(speed, value);
+        std_errors.empty() ? line.add(speed, value) : line.add(speed, value, std_errors[i]);
       }
     }
   }
@@ -148,7 +145,7 @@ void shade_beyond(const DrawnTrace& d, Chart& chart) {
     fastest = std::max(fastest, fit->fastest / kMillimetre);
     slowest = std::min(slowest, fit->slowest / kMillimetre);
   }
-  if (!(fastest > 0)) return;
+  if (!(fastest > 0) || chart.x.logarithmic) return;
   const double right = 1.12 * fastest;
   chart.x.low = -0.02 * right;
   chart.x.high = right;
@@ -158,9 +155,10 @@ void shade_beyond(const DrawnTrace& d, Chart& chart) {
 
 /// Relative error ([D] Eq 5): the mean of each bin as a line, its largest as points.
 Chart error_chart(const DrawnTrace& d, const char* id, const char* title, ChartAxis x) {
-  Chart chart =
-      half_chart(d.id + "-" + id, title, std::move(x), {.quantity = "relative error", .unit = "1", .from_zero = true});
-  chart.note = "|(measured − law)/measured| of every slip sample. Each bin shows its mean and its largest.";
+  Chart chart = half_chart(
+      d.id + "-" + id, title, std::move(x), {.quantity = "relative error", .unit = "1", .from_zero = true},
+      "|(measured − law)/measured| of every slip sample. Each bin shows its mean and its largest. Measure and "
+      "line at 8 %: the disc-block study with four friction radii of 2023, Eq 5 and Fig 12.");
   chart.marks = {{published_error_limit, false, Dash::dashed, "8 %"}};
   return chart;
 }
@@ -176,8 +174,8 @@ void add_errors(const std::string& name, std::size_t k, const BinExtremes& error
   add(", largest", errors.largest, dots(stroke.colour, kLargest[k % 3]));
 }
 
-/// Mean residual in units of the noise floor.
-Chart map_chart(const DrawnTrace& d, std::size_t model) {
+/// Mean residual in units of the noise floor; raises `most` to what is to be seen of it.
+Chart map_chart(const DrawnTrace& d, std::size_t model, double& most) {
   Chart chart = half_chart(d.id + "-map-" + std::to_string(model + 1),
                            "What " + curve_name(*d.models[model]) + " leaves over cycle and phase of the slip",
                            {"phase of the slip, 0 break-away to 1 re-stick", "1"}, {"cycle", ""});
@@ -185,10 +183,11 @@ Chart map_chart(const DrawnTrace& d, std::size_t model) {
       "Mean residual in units of the noise floor. Upright stripes: the law has the wrong shape. Changes from cycle to "
       "cycle: something moves with time or angle.";
   ResidualMap map = residual_map(d.trace.motion, d.trace.segmentation, d.predictions[model]);
-  const double floor = residual_unit(*d.models[model]), most = std::max(1.0, map.usual / floor);
+  const double floor = residual_unit(*d.models[model]);
+  most = std::max(most, map.usual / floor);
   for (std::vector<double>& row : map.mean) row = in_unit(row, floor);
-  chart.map = HeatMap{map.phase, map.first_cycle, map.mean, "residual / noise floor", "1", -most, most, true};
-  chart.height = 360;
+  chart.map = HeatMap{map.phase, map.first_cycle, map.mean, "residual / noise floor", "1", 0, 0, true};
+  chart.panels[0].part = chart_detail.square;
   return chart;
 }
 
@@ -196,19 +195,19 @@ Chart map_chart(const DrawnTrace& d, std::size_t model) {
 
 Chart law_chart(const DrawnTrace& d) {
   if (!(d.fastest > 0)) return {};
-  Chart chart = friction_chart(d,
-                               "Bands of the measurement: 5 to 95 % of the cycles. Bands of the laws: 95 % interval. "
-                               "Below: what each law leaves, in units of the noise floor. A law with effects is drawn "
-                               "along the slips, through both branches; its line of steady sliding, at the start of "
-                               "the record and over a turn of the disc, can be switched on.",
-                               false);
-  const auto bands = bands_of(d);
-  const std::size_t models = d.models.size();
+  const Motion& motion = d.trace.motion;
+  const bool points = motion.is_points(), decades = d.slowest > 0 && d.fastest > chart_detail.decades * d.slowest;
+  Chart chart = chart_of(d.id + "-law", "Friction over relative velocity",
+                         {.quantity = "relative velocity |v_{r}|", .unit = "mm/s", .logarithmic = points && decades},
+                         friction_axis(motion, 1.35), note_on_law(points));
+  const auto bands = points ? std::vector<std::vector<BranchBand>>(1 + 2 * d.models.size()) : bands_of(d);
+  if (points) add_points(d, motion.friction, motion.friction_std_error, 0, chart);
   for (const auto& [branch, band] : bands[0]) {
     const BranchStyle& style = style_of(branch, kBranches);
     add_band("measured, " + std::string(style.name), band, true, style.stroke, chart);
   }
-  add_break_aways(d, chart);
+  if (!points) add_break_aways(d, chart);
+  const std::size_t models = d.models.size();
   for (std::size_t m = 0; m < models; ++m) {  // the loop that the measurement goes through, too
     for (const auto& [branch, band] : bands[1 + models + m])
       add_band(curve_name(*d.models[m]), band, false, on_branch(m, branch, 2), chart);
@@ -216,37 +215,14 @@ Chart law_chart(const DrawnTrace& d) {
   add_curves(d, chart);
   shade_beyond(d, chart);
   if (d.models.empty()) return chart;
-  add_residual_panel(chart);
+  chart.panels.push_back({"residual / noise floor", "1"});
+  chart.marks = {{2, false, Dash::dotted, "+2 noise floors", 1}, {-2, false, Dash::dotted, "−2 noise floors", 1}};
+  if (points) add_points(d, residuals_of(d, 0), {}, 1, chart);
   for (std::size_t m = 0; m < models; ++m) {  // switched with the line of the model; one band is enough to look at
     for (const auto& [branch, band] : bands[1 + m]) {
       add_band(curve_name(*d.models[m]), band, m == 0, on_branch(m, branch, 1.3), chart).panel = 1;
     }
   }
-  return chart;
-}
-
-Chart points_chart(const DrawnTrace& d) {
-  if (!(d.fastest > 0)) return {};
-  const Motion& motion = d.trace.motion;
-  double slowest = std::numeric_limits<double>::infinity();
-  for (const double v : motion.relative_velocity) slowest = std::min(slowest, std::abs(v) / kMillimetre);
-  const bool logarithmic = slowest > 0 && d.fastest > chart_detail.decades * slowest;
-  Chart chart = friction_chart(d,
-                               "Points as measured, with their standard errors where they are stated. Bands of the "
-                               "laws: 95 % interval. Below: what the best law leaves, in units of the noise floor.",
-                               logarithmic);
-  add_points(d, motion.friction, motion.friction_std_error, 0, chart);
-  std::vector<double> speeds;
-  for (std::size_t k = 0; k < chart_detail.curve_points; ++k) {
-    const double part = static_cast<double>(k) / (chart_detail.curve_points - 1.0);
-    speeds.push_back(kMillimetre * (logarithmic ? slowest * std::pow(d.fastest / slowest, part) : d.fastest * part));
-  }
-  for (std::size_t k = 0; k < d.curves.size(); ++k) {
-    add_curve(*d.curves[k], law_curve(*d.curves[k], speeds, d.threads), model_stroke(k), k < 2, chart);
-  }
-  if (d.models.empty()) return chart;
-  add_residual_panel(chart);
-  add_points(d, residuals_of(d, 0), {}, 1, chart);
   return chart;
 }
 
@@ -271,13 +247,11 @@ std::vector<Chart> error_charts(const DrawnTrace& d) {
   }
   if (m.is_points()) charts.pop_back();
   if (d.trace.segmentation.kind != MotionKind::stick_slip) return charts;
-  double most = 0;  // the maps have one scale
-  const std::size_t first = charts.size();
-  for (std::size_t k = 0; k < std::min<std::size_t>(2, d.models.size()); ++k) {
-    charts.push_back(map_chart(d, k));
-    most = std::max(most, charts.back().map->high);
+  double most = 1;  // the maps have one scale
+  for (std::size_t k = 0; k < std::min<std::size_t>(2, d.models.size()); ++k) charts.push_back(map_chart(d, k, most));
+  for (Chart& chart : charts) {
+    if (chart.map) chart.map->low = -most, chart.map->high = most;
   }
-  for (std::size_t k = first; k < charts.size(); ++k) charts[k].map->low = -most, charts[k].map->high = most;
   return charts;
 }
 
@@ -293,7 +267,6 @@ std::vector<Chart> profile_charts(const Fit& fit, const Motion& motion, const st
         "Rise of the squares with this parameter held and all others refitted, in units of the rise at which the 95 % "
         "interval ends. Dotted: best value. A parabola means that the interval from the curvature is right.";
     chart.marks = {{1, false, Dash::dashed, "95 %"}, {shown(p, p.value), true, Dash::dotted, ""}};
-    chart.height = 280;
     std::replace_if(
         chart.id.begin(), chart.id.end(), [](unsigned char c) { return !std::isalnum(c) && c != '-'; }, '-');
     ChartLine& line = chart.line("profile", {Colour::blue, Dash::solid, Symbol::circle});

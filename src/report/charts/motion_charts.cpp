@@ -17,11 +17,8 @@ void mark_disc(double velocity, Chart& chart) {
 }  // namespace
 
 Chart portrait_chart(std::string id, std::string title, double disc_velocity, const std::vector<DrawnMotion>& motions) {
-  Chart chart{.id = std::move(id),
-              .title = std::move(title),
-              .x = {.quantity = "displacement of the block", .unit = "mm"},
-              .panels = {{.quantity = "velocity of the block", .unit = "mm/s"}},
-              .height = 420};
+  Chart chart = chart_of(std::move(id), std::move(title), {"displacement of the block", "mm"},
+                         {.quantity = "velocity of the block", .unit = "mm/s", .part = chart_detail.square});
   mark_disc(disc_velocity, chart);
   for (const auto& [m, stroke, closed] : motions) {
     ChartLine& line = chart.lines.emplace_back(ChartLine{m.name, m.displacement, m.velocity, stroke});
@@ -32,10 +29,8 @@ Chart portrait_chart(std::string id, std::string title, double disc_velocity, co
 
 Chart motion_chart(std::string id, std::string title, double disc_velocity, const ChartAxis& friction,
                    const std::vector<DrawnMotion>& motions) {
-  Chart chart{.id = std::move(id),
-              .title = std::move(title),
-              .x = {.quantity = "time", .unit = "s"},
-              .panels = {{"velocity v_{b}", "mm/s"}, friction, {"displacement", "mm"}}};
+  Chart chart = chart_of(std::move(id), std::move(title), {"time", "s"}, {"velocity v_{b}", "mm/s"});
+  chart.panels.insert(chart.panels.end(), {friction, {"displacement", "mm"}});
   mark_disc(disc_velocity, chart);
   for (const DrawnMotion& one : motions) {
     const Animation::Block& m = one.motion;

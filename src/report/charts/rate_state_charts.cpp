@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "report/numbers.hpp"
@@ -35,14 +34,11 @@ void add_step(const RateStateAnalysis& analysis, const RateStateCurve& curve, do
 }
 
 Chart whole_chart(const RateStateAnalysis& analysis) {
-  Chart chart{.id = "t1-response",
-              .title = "Friction and the fitted response",
-              .note =
-                  "The samples that were fitted, over the displacement of the load point; dotted lines mark where "
-                  "its speed changes.",
-              .x = {"displacement of the load point", "um"},
-              .height = 420};
-  chart.panels[0] = {"friction", unit_of_friction(analysis)};
+  Chart chart =
+      chart_of("t1-response", "Friction and the fitted response", {"displacement of the load point", "um"},
+               {"friction", unit_of_friction(analysis)},
+               "The samples that were fitted, over the displacement of the load point; dotted lines mark where "
+               "its speed changes.");
   for (const RateStateCurve& curve : analysis.curves) {
     add_step(analysis, curve, 0, -1e300, 1e300, chart);
     const VelocityStep& step = analysis.steps[curve.step];
@@ -74,7 +70,6 @@ Chart healing_chart(const Healing& healing, const std::string& unit) {
                            {"time at rest", "s"}, {"healing", unit});
   chart.x.logarithmic = true;
   ChartLine& line = chart.line("holds", dots(Colour::blue, Symbol::circle));
-  line.bars = true;
   for (const HoldMeasures& hold : healing.holds)
     line.add(hold.duration, hold.healing, std::hypot(hold.peak.std_error, hold.sliding.std_error));
   return chart;

@@ -128,6 +128,7 @@ struct ChartDetail {
   double event = 0.1;     ///< of the slip, to either side of its break-away and re-stick
   double harmonics = 12;  ///< multiples of the stick-slip frequency up to which a spectrum is shown
   double decades = 100;   ///< fastest over slowest from which points stand over the logarithm of the speed
+  double square = 1.8;    ///< part of a panel that is nearly as high as half the page is wide
   int digits = 5;         ///< of what is drawn: finer than any screen, and a page stays small
   int time_digits = 9;    ///< over the abscissa: 20 us are distinguishable after an hour
 };
@@ -163,10 +164,17 @@ inline Stroke marked(std::size_t k, bool joined = true) {
   return out;
 }
 
-/// A chart of one panel, without lines yet, that stands beside its neighbour.
-inline Chart half_chart(std::string id, std::string title, ChartAxis x, ChartAxis y) {
-  Chart chart{.id = std::move(id), .title = std::move(title), .x = std::move(x), .half = true};
+/// A chart of one panel, without lines yet.
+inline Chart chart_of(std::string id, std::string title, ChartAxis x, ChartAxis y, std::string note = "") {
+  Chart chart{.id = std::move(id), .title = std::move(title), .note = std::move(note), .x = std::move(x)};
   chart.panels[0] = std::move(y);
+  return chart;
+}
+
+/// One that stands beside its neighbour.
+inline Chart half_chart(std::string id, std::string title, ChartAxis x, ChartAxis y, std::string note = "") {
+  Chart chart = chart_of(std::move(id), std::move(title), std::move(x), std::move(y), std::move(note));
+  chart.half = true;
   return chart;
 }
 

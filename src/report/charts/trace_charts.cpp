@@ -97,7 +97,6 @@ Chart zoom_chart(const DrawnTrace& d, double at, double half, const char* id, co
   chart.note = fmt::format("±{} ms about {} s.", significant(half / kMillisecond, 2), significant(at, 6));
   chart.x = {.quantity = "time from the event", .unit = "ms"};
   chart.marks.push_back({0, true, Dash::dotted, ""});
-  chart.height = 400;
   chart.half = true;
   return chart;
 }
@@ -130,7 +129,6 @@ Chart spectrum_chart(const DrawnTrace& d) {
   Chart chart = half_chart(d.id + "-spectrum", "Spectrum of the relative velocity", {"frequency", "Hz"},
                            {.quantity = "amplitude of v_{r}", .unit = "mm/s", .from_zero = true});
   chart.note = "Hann window over the whole record.";
-  chart.height = 290;
   if (peak > 0) {
     chart.note = "Strongest line at " + significant(peak, 4) + " Hz (dotted). " + chart.note;
     chart.marks.push_back({peak, true, Dash::dotted, ""});
@@ -153,7 +151,6 @@ struct CycleMeasure {
 Chart cycle_chart(const DrawnTrace& d, const char* id, const char* title, ChartAxis axis, double unit,
                   std::initializer_list<CycleMeasure> measures) {
   Chart chart = half_chart(d.id + "-" + id, title, {.quantity = "time of break-away", .unit = "s"}, std::move(axis));
-  chart.height = 290;
   const std::vector<Cycle>& cycles = d.trace.segmentation.cycles;
   for (const CycleMeasure& measure : measures) {
     std::vector<double> values;
@@ -172,19 +169,19 @@ Chart record_chart(const DrawnTrace& d) {
   chart.id = d.id + "-record";
   chart.title = "The whole record";
   chart.note = "Each drawn interval shows its smallest and largest sample, so single-sample spikes stay visible.";
-  chart.height = 400;
   shade_left_out(d, chart);
   return chart;
 }
 
 }  // namespace
 
-DrawnTrace::DrawnTrace(const Identification& identification, const std::vector<const Fit*>& beside,
-                       const std::vector<const Fit*>& laws, std::string prefix, double part, std::size_t record,
-                       int draw_on)
-    : trace(identification), models(beside), curves(laws), id(std::move(prefix)), share(part), threads(draw_on) {
+DrawnTrace::DrawnTrace(const Identification& identification, const DrawnLaws& laws, std::string prefix, double part,
+                       std::size_t record, int draw_on)
+    : DrawnLaws(laws), trace(identification), id(std::move(prefix)), share(part), threads(draw_on) {
   pieces = slip_branches(trace.motion, trace.segmentation);
   fastest = fastest_of(trace.motion, pieces) / kMillimetre;
+  slowest = fastest;
+  for (const double v : trace.motion.relative_velocity) slowest = std::min(slowest, std::abs(v) / kMillimetre);
   predictions.resize(models.size());
   run_tasks(models.size(), threads, [&](std::size_t k) {
     predictions[k] = predict(*models[k], trace.motion, trace.segmentation, record, threads);
@@ -204,13 +201,13 @@ std::vector<Chart> cycle_charts(const DrawnTrace& d) {
   const std::vector<Cycle>& cycles = d.trace.segmentation.cycles;
   const Motion& motion = d.trace.motion;
   const auto [first, begin, end] = shown_cycles(d);
+  if (motion.is_points()) return {};  // which have no time
   if (end < begin + 2) return {record_chart(d)};
   Chart chart = window_chart(d, {begin, end, d.bins(chart_detail.cycles)}, true);
   chart.id = d.id + "-cycles";
   chart.title = d.models.empty() ? "Three cycles" : "Three cycles, measured and by the law";
   chart.note = "Cycles " + std::to_string(first) + " to " + std::to_string(first + chart_detail.shown_cycles - 1) +
                ". In stick the spring sets friction, so the law applies in slip only.";
-  chart.height = 470;
   for (std::size_t k = first; k < first + chart_detail.shown_cycles; ++k) shade_phases(motion, cycles[k], chart);
   std::vector<Chart> charts = {chart};
   const Cycle& shown = cycles[first + chart_detail.shown_cycles / 2];

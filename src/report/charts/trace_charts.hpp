@@ -9,21 +9,24 @@
 
 namespace tribofit {
 
+/// Fits that are drawn.
+struct DrawnLaws {
+  std::vector<const Fit*> models = {};  ///< beside the samples, the one to look at first
+  std::vector<const Fit*> curves = {};  ///< whose law is drawn over speed: the models, and others
+};
+
 /// What the charts of one trace share: its samples, and what each model says of every one of them.
-struct DrawnTrace {
+struct DrawnTrace : DrawnLaws {
   const Identification& trace;
-  const std::vector<const Fit*>& models;         ///< beside the samples, the one to look at first
-  const std::vector<const Fit*>& curves;         ///< whose law is drawn over speed: the models, and others
   std::string id;                                ///< begins the ids of the charts
   double share;                                  ///< part of the points of a page that this trace may have
   std::vector<std::vector<double>> predictions;  ///< of each model, NaN outside slips
   std::vector<SlipBranch> pieces;                ///< of the slips
-  double fastest = 0;                            ///< |v_r| of them [mm/s]; 0 where nothing slips
+  double fastest = 0, slowest = 0;               ///< |v_r| of them, and of all samples [mm/s]; 0 where nothing slips
   int threads;                                   ///< that draw side by side
 
-  DrawnTrace(const Identification& identification, const std::vector<const Fit*>& beside,
-             const std::vector<const Fit*>& laws, std::string prefix, double part = 1, std::size_t record = 0,
-             int draw_on = 1);
+  DrawnTrace(const Identification& identification, const DrawnLaws& laws, std::string prefix, double part = 1,
+             std::size_t record = 0, int draw_on = 1);
   /// Points that a series of this trace may have where a trace alone has `whole`.
   std::size_t bins(std::size_t whole) const;
 };
@@ -36,11 +39,9 @@ std::vector<Chart> cycle_charts(const DrawnTrace& drawn);
 std::vector<Chart> measure_charts(const DrawnTrace& drawn);
 
 /// Friction over |v_r|: branches as bands over cycles, laws with their 95 % bands, residuals in units of the noise
-/// floor. Shows nothing where nothing slips.
+/// floor. Of steady points each is a symbol with its standard error; over the logarithm of the speed where they reach
+/// over two decades. Shows nothing where nothing slips.
 Chart law_chart(const DrawnTrace& drawn);
-/// The same of steady points, each a symbol with its standard error; over the logarithm of the speed where they reach
-/// over two decades.
-Chart points_chart(const DrawnTrace& drawn);
 /// Relative errors ([D] Eq 5) over speed and time (points have none), and the map of residuals over cycle and phase of
 /// the slip.
 std::vector<Chart> error_charts(const DrawnTrace& drawn);

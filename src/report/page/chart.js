@@ -107,12 +107,12 @@ function tracesOfMap(chart) {
   const cells = { type: "heatmap", name: plain(map.quantity), x: map.x, y: map.y, z: map.z,
     zmin: map.low ?? undefined, zmax: map.high ?? undefined,
     zauto: map.low === null, colorscale: colours.map((colour, k) => [k / (colours.length - 1), colour]), hoverongaps: false,
-    opacity: map.contours ? 0.6 : 1, // lines and their numbers must be read on it
+    opacity: map.diverging ? 1 : 0.6, // lines and their numbers must be read on it
     colorbar: { title: { text: marked(titleOf(map)), side: "right" }, thickness: 12, outlinecolor: styles.axis,
       tickcolor: styles.axis, tickfont: { color: styles.text } },
     hovertemplate: `${marked(x.quantity)} %{x}${plain(unitOf(x))}<br>${marked(y.quantity)} %{y}${plain(unitOf(y))}` +
       `<br>%{z:.5g}${plain(unitOf(map))}<extra></extra>` };
-  if (!map.contours) return [cells];
+  if (map.diverging) return [cells];
   return [cells, { type: "contour", x: map.x, y: map.y, z: map.z, ncontours: 8, showscale: false, hoverinfo: "skip",
     showlegend: false, connectgaps: false, line: { color: styles.colours.black, width: 1 },
     contours: { coloring: "none", showlabels: true, labelfont: { size: 11, color: styles.colours.black } } }];

@@ -10,7 +10,7 @@ function savePicture(item, format) {
   for (const name of axesOf(item.chart)) layout[name].range = [...item.plot._fullLayout[name].range];
   fitBelow(layout, item.chart, layout.width);
   return Plotly.toImage({ data: item.traces, layout }, { format, width: 900, height, scale: format === "png" ? 3 : 1 })
-    .then((url) => make("a", { href: url, download: `${item.chart.id}.${format}` }).click());
+    .then((url) => save(`${item.chart.id}.${format}`, url));
 }
 
 // On paper charts are as wide as the page, and folded tables are open.

@@ -40,28 +40,14 @@ function makeItems(element, items) {
   return made;
 }
 
-/** Fills a section; what it has already stays, and charts are changed, not made anew. */
+/** Fills a section; what it has already stays, and charts are changed, not made anew. Halves stand beside each other. */
 function fillSection(element, section) {
   const title = element.querySelector(":scope > h2") || make("h2");
   if (title.textContent !== section.title) title.textContent = section.title;
-  const parts = [title], pairs = new Map();
-  let pair = null;
-  makeItems(element, section.items).forEach((made, k) => {
-    if (!section.items[k].half) {
-      pair = null;
-      parts.push(made);
-      return;
-    }
-    if (!pair) {
-      const stood = made.parentElement; // the pair that it was the first of
-      pair = stood && stood.className === "pair" && stood.firstChild === made ? stood : make("div", { className: "pair" });
-      pairs.set(pair, []);
-      parts.push(pair);
-    }
-    pairs.get(pair).push(made);
-  });
-  for (const [box, halves] of pairs) arrange(box, halves);
-  arrange(element, parts);
+  const made = makeItems(element, section.items);
+  made.forEach((one, k) => one.classList.toggle("half", section.items[k].half === true));
+  element.className = "parts";
+  arrange(element, [title, ...made]);
 }
 
 function headerItems(report) {

@@ -39,14 +39,7 @@ function prose(text) {
   return words.replace(/^[a-z](?=[a-z'-]*( [^=]|$))/, (letter) => letter.toUpperCase()); // but "mu_s" and "mu = ..."
 }
 
-const tableWidths = new ResizeObserver((entries) => {
-  for (const { target } of entries) {
-    const box = target.closest(".scroll");
-    if (box) box.parentElement.classList.toggle("overflows", box.scrollWidth > box.clientWidth + 1);
-  }
-});
-
-/** A table; columns named in `numeric` are set to the right. Where it is wider than its place it scrolls, and says so. */
+/** A table; columns named in `numeric` are set to the right. Where it is wider than its place it scrolls. */
 function table(caption, header, rows, numeric = []) {
   const isLong = (k) => rows.some((row) => String(row[k] ?? "").length > 16);
   const aligned = header.map((_, k) => (numeric.includes(k) ? { className: "number" } : isLong(k) ? { className: "words" } : {}));
@@ -56,12 +49,7 @@ function table(caption, header, rows, numeric = []) {
       ...header.map((name, k) => (name ? cell("th", name, k, { scope: "col" }) : make("td"))))),
     make("tbody", {}, ...rows.map((row) => make("tr", {}, ...header.map((_, k) => cell("td", row[k] ?? "", k))))));
   if (header.length > 8) whole.className = "wide";
-  const box = make("div", { className: "scroll", tabindex: "0", role: "group", "aria-label": symbols(caption || "Table") }, whole);
-  const outer = make("div", { className: "table" }, box,
-    make("p", { className: "hint", "aria-hidden": "true" }, "more columns to the right: scroll →"));
-  tableWidths.observe(box);
-  tableWidths.observe(whole);
-  return outer;
+  return make("div", { className: "scroll", tabindex: "0", role: "group", "aria-label": symbols(caption || "Table") }, whole);
 }
 
 /** Facts as a list of names and values. */
@@ -70,13 +58,9 @@ function facts(pairs) {
     .map(([name, value]) => make("div", {}, make("dt", {}, prose(name)), make("dd", {}, prose(value)))));
 }
 
+/** Saves content, or what a link leads to. */
 function save(name, content) {
-  const url = URL.createObjectURL(content);
-  const link = make("a", { href: url, download: name });
-  document.body.append(link);
-  link.click();
-  link.remove();
-  setTimeout(() => URL.revokeObjectURL(url), 10000);
+  make("a", { href: content instanceof Blob ? URL.createObjectURL(content) : content, download: name }).click();
 }
 
 /** The numbers of a chart behind a switch: made when it is opened, and anew by its fill(); cut after `most` rows, whole as

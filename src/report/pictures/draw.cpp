@@ -294,8 +294,13 @@ class Drawing {
 
   void draw_colour_box() {
     const Area& box = layout_.colour_box;
-    const double right = box.right();
-    sheet_.shade(box, colours_of(*chart_.map));
+    const double right = box.right(), step = box.height / sizes.colour_steps;
+    sheet_.begin_plot(box);
+    for (int k = 0; k < sizes.colour_steps; ++k) {
+      const std::string colour = heat_colour((k + 0.5) / sizes.colour_steps, colours_of(*chart_.map));
+      sheet_.tile({box.left, box.bottom + k * step, box.width, step}, colour);
+    }
+    sheet_.end_plot();
     write_upright(layout_.colours.title, {layout_.colour_title_x, box.bottom + box.height / 2});
     for (const Scale::Tic& tic : layout_.colours.tics) {
       const double y = box.bottom + layout_.colours.part(tic.at) * box.height;

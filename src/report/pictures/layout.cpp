@@ -112,7 +112,7 @@ TitleLines broken(const std::string& title, double length) {
 /// Heights of the panels: what is left of the chart's height beside axis and gaps, by their parts.
 std::vector<double> heights_of(const Chart& chart) {
   const double gaps = sizes.between_panels * static_cast<double>(chart.panels.size() - 1);
-  const double all = sizes.pixel * chart.height - 2 * sizes.text_line - sizes.tic_gap - 2 * sizes.edge - gaps;
+  const double all = sizes.pixel * chart.height() - 2 * sizes.text_line - sizes.tic_gap - 2 * sizes.edge - gaps;
   double parts = 0;
   for (const ChartAxis& panel : chart.panels) parts += panel.part;
   std::vector<double> heights;

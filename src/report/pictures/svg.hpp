@@ -90,16 +90,6 @@ class Svg {
         across(area.width), across(area.height));
   }
 
-  /// Colours from the lower end of an area to its upper one.
-  void shade(const Area& area, std::span<const std::string_view> colours) {
-    say(R"(<linearGradient id="p{}" x1="0" y1="1" x2="0" y2="0">)", ++named_);
-    for (std::size_t k = 0; k < colours.size(); ++k) {
-      const double offset = static_cast<double>(k) / static_cast<double>(colours.size() - 1);
-      say(R"(<stop offset="{:.4g}" stop-color="{}"/>)", offset, colours[k]);
-    }
-    say(R"x(</linearGradient>{} fill="url(#p{})"/>)x", box_of(area), named_);
-  }
-
   /// A symbol of this radius [mm] at each place.
   void symbols(const Path& at, Symbol symbol, double radius, Colour colour) {
     const std::string_view rgb = ink(colour).colour;
@@ -132,7 +122,8 @@ class Svg {
 
   /// What is drawn until end_plot() is seen within `area` only.
   void begin_plot(const Area& area) {
-    say(R"(<clipPath id="p{}">{}/></clipPath>)", ++named_, box_of(area));
+    say(R"(<clipPath id="p{}"><rect x="{}" y="{}" width="{}" height="{}"/></clipPath>)", ++named_, across(area.left),
+        down(area.top()), across(area.width), across(area.height));
     say(R"x(<g class="plot" stroke-width="0.4" clip-path="url(#p{})">)x", named_);
   }
   void end_plot() { say("</g>"); }
@@ -165,11 +156,6 @@ class Svg {
       for (const Point& p : path) data += (&p == &path.front() ? "M" : "L") + across(p.x) + "," + down(p.y);
     }
     return data;
-  }
-
-  std::string box_of(const Area& area) const {
-    return fmt::format(R"(<rect x="{}" y="{}" width="{}" height="{}")", across(area.left), down(area.top()),
-                       across(area.width), across(area.height));
   }
 
   /// What is set low and high in a size of its own, off the line.

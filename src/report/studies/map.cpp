@@ -23,7 +23,7 @@ Chart map_chart(const StudiedMachine& studied, const MapRequest& request, const 
   Chart chart =
       half_chart("map-" + info.name, capitalised(fmt::format("{} over {} and {}", info.name, across.name, up.name)),
                  axis_for(request.x), axis_for(request.y));
-  chart.height = 420;
+  chart.panels[0].part = chart_detail.square;
   const CoarseMap coarse = coarse_map(request, rows, measure, kMostCells);
   HeatMap map{in_unit(coarse.x, across.si), in_unit(coarse.y, up.si), {}, info.name, info.unit};
   for (const std::vector<double>& row : coarse.z) map.z.push_back(in_unit(row, info.si));
@@ -31,7 +31,6 @@ Chart map_chart(const StudiedMachine& studied, const MapRequest& request, const 
     return std::any_of(row.begin(), row.end(), [](double z) { return !std::isfinite(z); });
   });
   if (any_gap) chart.note = "White: nothing there, the block slides or its motion did not settle.";
-  map.contours = true;
   chart.map = std::move(map);
   ChartLine& edge = chart.line("edge of stick-slip", dots(Colour::black, Symbol::circle, 3));
   const std::size_t every = 1 + std::max(request.x.values.size(), request.y.values.size()) / kMostCells;

@@ -47,12 +47,12 @@ std::string friction_sentence(const Machine& m) {
 }
 
 ReportTable machine_table(const StudiedMachine& studied) {
-  const double unknown = std::nan("");
-  std::vector<ShownValue> values;
+  std::vector<ResultParameter> values;
   std::vector<std::string> meanings;
   for (const Variable& v : variables_of(studied.machine)) {
-    values.push_back({v.name, value_of(studied.machine, v.name) / v.si, std_error_of(studied, v.name) / v.si, unknown,
-                      unknown, v.unit == "1" ? "" : v.unit});
+    values.push_back({{value_of(studied.machine, v.name) / v.si, std_error_of(studied, v.name) / v.si, std::nan("")},
+                      v.name,
+                      v.unit == "1" ? "" : v.unit});
     meanings.push_back(v.meaning);
   }
   ReportTable table = value_table("number", values);
@@ -105,7 +105,7 @@ Report study_report(const StudiedMachine& studied, const char* kind, std::string
                     const std::vector<std::string>& seen) {
   const StudyKind& own = *std::find_if(std::begin(kKinds), std::end(kKinds),
                                        [&](const StudyKind& one) { return one.key == std::string_view(kind); });
-  Report report = titled_report("study", own.title, "Study", std::move(lead));
+  Report report = titled_report("study", own.title, std::move(lead));
   report.warnings = joined(studied.warnings, seen);
   std::erase(report.warnings, "");
   report.facts = facts_of(studied, kind, options);

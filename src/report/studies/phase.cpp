@@ -15,26 +15,6 @@ std::string speed_text(const Portrait& portrait) {
   return significant(portrait.velocity / kMillimetre, 4) + " mm/s";
 }
 
-Chart portrait_of(const StudiedMachine& studied, const Portrait& portrait, std::size_t number) {
-  std::vector<DrawnMotion> motions = {
-      {drawn_motion("from the start", portrait.start), {.colour = Colour::grey, .dash = Dash::dotted, .width = 1}}};
-  if (portrait.cycle.size() > 0) {
-    motions.push_back({drawn_motion("settled cycle", portrait.cycle), {.colour = Colour::black, .width = 2}, true});
-  }
-  const BlockMotion measured = measured_motion(studied, portrait.velocity);
-  if (measured.size() > 0) {
-    motions.push_back({drawn_motion(fmt::format("measured, {} cycles", measured.cycles), measured),
-                       {.colour = Colour::red, .dash = Dash::dashed, .width = 1.2}});
-  }
-  Chart chart =
-      portrait_chart(fmt::format("phase-{}", number),
-                     fmt::format("Portrait at {}: {}", speed_text(portrait), to_string(portrait.settled.regime)),
-                     portrait.velocity, motions);
-  chart.height = 380;
-  chart.half = true;
-  return chart;
-}
-
 Chart all_portraits(const std::vector<Portrait>& study, const std::vector<std::size_t>& drawn) {
   std::vector<DrawnMotion> motions;
   for (std::size_t k = 0; k < drawn.size(); ++k) {
@@ -45,26 +25,32 @@ Chart all_portraits(const std::vector<Portrait>& study, const std::vector<std::s
   return portrait_chart("phase-all", "Settled cycles at all speeds", 0, motions);
 }
 
-Chart time_chart(const Portrait& portrait, std::size_t number) {
-  Chart chart =
-      motion_chart(fmt::format("motion-{}", number), "Motion at " + speed_text(portrait) + " over time, from the start",
-                   portrait.velocity, {"friction", "1"}, {{drawn_motion("motion", portrait.start), stroke_of(0)}});
-  chart.height = 520;
-  return chart;
-}
-
-/// The block at one speed, and as it was measured where it was.
-Animation animation_of(const StudiedMachine& studied, const Portrait& portrait, std::size_t number) {
-  Animation out{.id = fmt::format("block-{}", number),
-                .title = "The block on its disc at " + speed_text(portrait),
-                .disc_velocity = portrait.velocity / kMillimetre};
+/// A motion as a portrait, over time, and alive, with what was measured at that speed.
+void add_motion(const StudiedMachine& studied, const Portrait& portrait, std::size_t number, ReportSection& portraits,
+                ReportSection& times, ReportSection& moving) {
+  const std::string at = speed_text(portrait);
+  const Animation::Block start = drawn_motion("from the start", portrait.start);
+  std::vector<DrawnMotion> motions = {{start, {.colour = Colour::grey, .dash = Dash::dotted, .width = 1}}};
+  Animation alive{.id = fmt::format("block-{}", number),
+                  .title = "The block on its disc at " + at,
+                  .disc_velocity = portrait.velocity / kMillimetre};
   const BlockMotion measured = measured_motion(studied, portrait.velocity);
   if (measured.size() > 0) {
-    out.blocks.push_back(drawn_motion("measured", measured));
-    out.note = "Measured (three cycles) beside simulated (one settled cycle).";
+    alive.blocks = {drawn_motion(fmt::format("measured, {} cycles", measured.cycles), measured)};
+    motions.push_back({alive.blocks[0], {.colour = Colour::red, .dash = Dash::dashed, .width = 1.2}});
   }
-  out.blocks.push_back(drawn_motion("simulated", portrait.cycle));
-  return out;
+  if (portrait.cycle.size() > 0) {
+    alive.blocks.push_back(drawn_motion("settled cycle", portrait.cycle));
+    motions.push_back({alive.blocks.back(), {.colour = Colour::black, .width = 2}, true});
+    moving.add(std::move(alive));
+  }
+  Chart chart = portrait_chart(fmt::format("phase-{}", number),
+                               fmt::format("Portrait at {}: {}", at, to_string(portrait.settled.regime)),
+                               portrait.velocity, motions);
+  chart.half = true;
+  portraits.add(std::move(chart));
+  times.add(motion_chart(fmt::format("motion-{}", number), "Motion at " + at + " over time, from the start",
+                         portrait.velocity, {"friction", "1"}, {{start, stroke_of(0)}}));
 }
 
 /// "Stick-slip at 2, 6 and 10 mm/s; sliding at 500 mm/s."
@@ -137,10 +123,7 @@ Report report_of(const StudiedMachine& studied, const std::vector<Portrait>& stu
   }
   if (drawn.size() > 1) portraits.add(all_portraits(study, drawn));
   for (std::size_t k = 0; k < drawn.size(); ++k) {
-    const Portrait& portrait = study[drawn[k]];
-    portraits.add(portrait_of(studied, portrait, k + 1));
-    times.add(time_chart(portrait, k + 1));
-    if (portrait.cycle.size() > 0) moving.add(animation_of(studied, portrait, k + 1));
+    add_motion(studied, study[drawn[k]], k + 1, portraits, times, moving);
   }
   ReportTable table = settled_table("Measures of the settled motions");
   std::vector<std::string> unsettled;

@@ -39,14 +39,12 @@ void mark_natural(const Response& study, Chart& chart) {
 }
 
 Chart curve_chart(const Response& study) {
-  Chart chart{.id = "response-curve",
-              .title = "Amplitude that a force of each frequency would give",
-              .note = fmt::format("A(omega) = F/sqrt((k - m omega^2)^2 + (c omega)^2) with F = {} N.",
-                                  significant(study.force, 4)),
-              .x = {.quantity = "frequency", .unit = "Hz", .logarithmic = true},
-              .panels = {{.quantity = "amplitude of the displacement", .unit = "mm", .logarithmic = true}},
-              .lines = {{"A(omega)", study.frequency, in_unit(study.amplitude, kMillimetre), stroke_of(0)}},
-              .height = 400};
+  Chart chart = chart_of(
+      "response-curve", "Amplitude that a force of each frequency would give",
+      {.quantity = "frequency", .unit = "Hz", .logarithmic = true},
+      {.quantity = "amplitude of the displacement", .unit = "mm", .logarithmic = true},
+      fmt::format("A(omega) = F/sqrt((k - m omega^2)^2 + (c omega)^2) with F = {} N.", significant(study.force, 4)));
+  chart.lines = {{"A(omega)", study.frequency, in_unit(study.amplitude, kMillimetre), stroke_of(0)}};
   if (study.frequency.empty() || study.amplitude.empty()) return chart;
   const double least = 0.1 * *std::min_element(study.amplitude.begin(), study.amplitude.end());  // else off the paper
   ChartLine& lines = chart.line("lines of the settled motion", marked(1, false));

@@ -37,7 +37,6 @@ Chart sweep_chart(const std::vector<Sensitivity>& study, std::size_t measure) {
                            {.quantity = "value over that of the machine", .unit = "1", .logarithmic = true},
                            {info.name, info.unit});
   chart.marks = {{1, true, Dash::dotted, "the machine", 0}};
-  chart.height = 380;
   constexpr std::size_t kShown = 6;  // that are not switched off at first
   std::size_t k = 0;
   for (const std::size_t i : ranked(study, measure)) {
@@ -66,7 +65,6 @@ Chart elasticity_chart(const std::vector<Sensitivity>& study, std::size_t measur
   }
   chart.marks = {{0, true, Dash::solid}};
   chart.x.from_zero = true;
-  chart.height = 110 + 26 * static_cast<int>(names.size());
   return chart;
 }
 

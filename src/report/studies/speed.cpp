@@ -172,11 +172,7 @@ ChartAxis speed_axis(const SpeedStudy& study) {
 
 Chart over_speed(const StudiedMachine& studied, const SpeedStudy& study, const char* id, const char* title,
                  std::initializer_list<const char*> names) {
-  Chart chart{.id = id,
-              .title = title,
-              .x = speed_axis(study),
-              .panels = {},
-              .height = 150 + 170 * static_cast<int>(names.size())};
+  Chart chart{.id = id, .title = title, .x = speed_axis(study), .panels = {}};
   for (const std::string name : names) {
     const MeasureInfo& measure = measure_named(name);
     const std::size_t panel = chart.panels.size();
@@ -184,7 +180,6 @@ Chart over_speed(const StudiedMachine& studied, const SpeedStudy& study, const c
     for (const Way& way : ways_of(study)) add_way(study, way, measure, panel, chart);
     if (const Estimate* measured = measured_value(studied, measure)) {
       ChartLine& line = chart.line("measured", dots(Colour::black, Symbol::cross, 9), panel);
-      line.bars = true;
       line.add(studied.machine.disc_velocity() / kMillimetre, measured->value / measure.si,
                kNormalQuantile95 * measured->std_error / measure.si);
     }
@@ -197,13 +192,11 @@ Chart over_speed(const StudiedMachine& studied, const SpeedStudy& study, const c
 }
 
 Chart growth_chart(const SpeedStudy& study) {
-  Chart chart{.id = "growth-rate",
-              .title = "Growth of a small vibration about steady sliding",
-              .note = "Above zero steady sliding is unstable: a vibration grows until it sticks or is held by the law.",
-              .x = speed_axis(study),
-              .panels = {{.quantity = "growth rate", .unit = "1/s"}},
-              .lines = {{"growth rate", in_unit(study.velocity, kMillimetre), study.growth_rate, stroke_of(0)}},
-              .marks = {{.dash = Dash::solid}}};
+  Chart chart = chart_of(
+      "growth-rate", "Growth of a small vibration about steady sliding", speed_axis(study), {"growth rate", "1/s"},
+      "Above zero steady sliding is unstable: a vibration grows until it sticks or is held by the law.");
+  chart.lines = {{"growth rate", in_unit(study.velocity, kMillimetre), study.growth_rate, stroke_of(0)}};
+  chart.marks = {{.dash = Dash::solid}};
   mark_critical(study, true, chart);
   return chart;
 }
