@@ -114,7 +114,12 @@ std::string paragraph_of_file(const std::string& path, std::vector<std::string>&
   std::ifstream file(path);
   if (!file) throw InputError("the result cannot be opened", "give a file that --json wrote", where);
   try {
-    return paragraph_of(Json::parse(file), names);
+    const auto refuse_deep = [&](int depth, Json::parse_event_t, const Json&) {
+      constexpr int kDeepestJson = 64;  // far deeper ones would not fit on the stack
+      if (depth > kDeepestJson) throw InputError("is nested too deeply", "give a file that --json wrote", where);
+      return true;
+    };
+    return paragraph_of(Json::parse(file, refuse_deep), names);
   } catch (const Json::exception&) {
     throw InputError("is not the result of one trace",
                      "give a file that 'identify --json' or 'identify diagnose --json' wrote", where);

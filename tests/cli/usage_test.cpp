@@ -5,8 +5,8 @@
 #include <regex>
 
 #include "command.hpp"
-#include "tribofit/report/report.hpp"
 #include "tribofit/report/pictures.hpp"
+#include "tribofit/report/report.hpp"
 
 namespace {
 
@@ -152,6 +152,12 @@ TEST(Cite, TellsARunAndItsSources) {
   }
   EXPECT_THAT(cited.out, AllOf(HasSubstr("100000 samples"), HasSubstr("15 mm"), HasSubstr("Wear 24 (1973) 381"),
                                HasSubstr(run.at("trace").at("checksum").get<std::string>())));
+  std::string deep;
+  for (int k = 0; k < 60000; ++k) deep += "{\"a\": [";
+  for (int k = 0; k < 60000; ++k) deep += "], \"b\": 1}";
+  const Outcome refused = shop.identify("cite '" + shop.write("deep.json", deep) + "'");
+  EXPECT_EQ(refused.status, 3);
+  EXPECT_THAT(refused.err, HasSubstr("nested too deeply"));
   EXPECT_EQ(shop.identify("cite runot").status, 2);
   EXPECT_THAT(shop.identify("cite runot").err, HasSubstr("did you mean runout?"));
   EXPECT_EQ(shop.identify("cite '" TRIBOFIT_SOURCE_DIR "/data/example.json'").status, 3);

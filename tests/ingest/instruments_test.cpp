@@ -50,6 +50,15 @@ TEST_F(InstrumentsFile, TheZeroMayBeAForce) {
       read_instruments(write(R"({"force_sensor": {"zero": ["0.2 N", "0.01 N"]}})")).force_sensor.zero->value, 0.2);
 }
 
+TEST_F(InstrumentsFile, NestingThatNoStackHoldsIsRefused) {
+  for (const std::size_t levels : {20U, 60000U}) {
+    std::string json;
+    for (std::size_t k = 0; k < levels; ++k) json += "{\"a\": [";
+    for (std::size_t k = 0; k < levels; ++k) json += "], \"b\": 1}";
+    expect_refused(json, "is nested too deeply", "sections");
+  }
+}
+
 TEST_F(InstrumentsFile, MistakesAreNamed) {
   expect_refused("{\n\"rig\": {\n\"radius\": \"15 mm\",,\n}}", "is not valid JSON", "commas", 3);
   expect_refused(R"({"rigg": {}})", "rigg: unknown key (did you mean rig?)", "known keys are vibrometer");

@@ -107,6 +107,27 @@ TEST(Recorders, AVelocityThatDropsOutIsLeftOutThere) {
     EXPECT_THAT(item(compute_motion(recorded(5, rpm)), "drop-outs").message, Not(HasSubstr("jumps away"))) << rpm;
 }
 
+/// A laser without a speckle reads anything within its range, sample by sample, for some samples.
+TEST(Recorders, AnyReadingsOfADropOutAreLeftOut) {
+  std::mt19937_64 engine(8);
+  std::uniform_real_distribution<double> anything(-0.15, 0.15);
+  Trace trace = recorded(7);
+  const Trace sound = trace;
+  std::vector<std::size_t> lost;
+  for (std::size_t begin = 1000; begin + 30 < trace.size(); begin += 997) {
+    for (std::size_t i = begin; i < begin + 5; ++i) trace.velocity[i] = anything(engine), lost.push_back(i);
+  }
+  const double disc = trace.conditions.speed.value * trace.conditions.radius.value;
+  const Motion motion = compute_motion(std::move(trace));
+  std::size_t wrong = 0;
+  for (const std::size_t i : lost) {
+    if (i < motion.trimmed) continue;
+    wrong += std::abs(motion.relative_velocity[i - motion.trimmed] - (disc - sound.velocity[i])) > 2e-3 ? 1U : 0U;
+  }
+  EXPECT_LT(wrong, lost.size() / 50);
+  EXPECT_NE(item(motion, "drop-outs").status, HealthItem::Status::ok);
+}
+
 /// Where a joint that turns at 1 rad/s, sampled at 67 Hz, is at rest, which an encoder reads as exactly zero.
 Trace joint_at_rest(std::size_t begin, std::size_t end) {
   std::mt19937_64 engine(6);

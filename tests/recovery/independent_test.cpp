@@ -179,4 +179,21 @@ INSTANTIATE_TEST_SUITE_P(Reciprocating, LoadedRecord,
                          testing::Values(Loaded{"asymmetry", 1.15, with_ratio(reciprocating(0.02, 1, 31), 1.15)}),
                          [](const auto& hidden) { return std::string(hidden.param.key); });
 
+/// A velocity with much noise: 0.5 mm/s is a tenth of the disc's speed, as a vibrometer far from its target has it.
+/// What is fitted to it as it was read is off by several standard errors.
+Rig with_noisy_velocity(Rig rig) {
+  rig.velocity_noise = 0.5e-3, rig.rate = 20000, rig.scatter = 0.004, rig.duration = 15;
+  return rig;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    NoisyVelocity, LoadedRecord,
+    testing::Values(Loaded{"viscous", 0.5,
+                           with_noisy_velocity({.fractional = true, .decay = 95, .viscous = 0.5, .seed = 41})},
+                    Loaded{"channel-delay", 0.5e-3, with_noisy_velocity({.delay = 0.5e-3, .seed = 42})},
+                    Loaded{"channel-delay", -0.3e-3, with_noisy_velocity({.delay = -0.3e-3, .seed = 43})}),
+    [](const auto& hidden) {
+      return (hidden.index == 0 ? "viscous" : hidden.index == 1 ? "late" : "early");
+    });
+
 }  // namespace
