@@ -178,11 +178,13 @@ inline constexpr double kLeastScaleOfForce = 0.2;
 
 // ---- acceleration of the block
 
-/// Half windows of the slope of the velocity [samples], the widest for a slip of this part of its samples or more, and
+/// Half windows of the velocity and its slope [samples], each for slips of which it is this part or less a window, and
 /// the squares by which a window may differ from shorter ones, over those of noise alone. Wider: a mass that turns
 /// quickly is found too heavy (1.5 % where a drive turns within 20 samples); narrower: noise of the acceleration.
 inline constexpr std::array<std::size_t, 8> kHalfWindows = {20, 14, 10, 7, 5, 3, 2, 1};
-inline constexpr double kWindowOfSlip = 0.03, kFlattened = 2;
+inline constexpr double kWindowOfSlip = 0.0015, kFlattened = 2;
+/// The widest of a slope: where a pull's inertia shows within few samples a wider one takes a part of it.
+inline constexpr std::size_t kWidestOfSlope = 10;
 /// Samples of a slip over which windows are compared.
 inline constexpr std::size_t kMostLookedAt = 8192;
 

@@ -42,11 +42,11 @@ bool follows(std::span<const double> velocity, std::size_t half, double noise) {
   return true;
 }
 
-/// The widest half window that does not flatten what the velocity of a slip does.
-std::size_t half_window(const Motion& motion, const SampleRange& samples) {
+/// The widest half window, up to some samples, that does not flatten what the velocity of a slip does.
+std::size_t half_window(const Motion& motion, const SampleRange& samples, std::size_t most) {
   // The same part of a slip at any rate leaves about the same noise.
-  const double stretch = kWindowOfSlip * static_cast<double>(samples.size());
-  auto half = static_cast<std::size_t>(std::clamp(std::round(stretch), 2.0, static_cast<double>(kHalfWindows.front())));
+  const double stretch = kWindowOfSlip * static_cast<double>(samples.size() * most);
+  auto half = static_cast<std::size_t>(std::clamp(std::round(stretch), 2.0, static_cast<double>(most)));
   const std::size_t end = std::min(samples.end, samples.begin + kMostLookedAt);
   if (end - samples.begin < 4 * half) return half;
   std::vector<double> velocity;
@@ -61,6 +61,30 @@ std::size_t half_window(const Motion& motion, const SampleRange& samples) {
   return half;
 }
 
+/// Sums of the samples about each one of a slip, by weights of their parabola there; the window stops at the slip's
+/// end. Empty where there are too few samples.
+template <class Sample>
+std::vector<double> sums_about(const SampleRange& samples, std::size_t widest,
+                               std::vector<double> ParabolaWeights::*kind, Sample&& sample) {
+  const std::size_t begin = samples.begin - std::min(samples.begin, 2 * widest);
+  if (samples.end - begin < 3) return {};
+  const std::size_t half = std::min(widest, (samples.end - begin - 1) / 2);
+  std::vector<double> sums, weights;
+  std::size_t last_left = 0, last_right = 0;
+  for (std::size_t i = samples.begin; i < samples.end; ++i) {
+    const std::size_t before = std::min(half, i - begin);  // less at the beginning of a record
+    const std::size_t right = std::min(2 * half - before, samples.end - 1 - i);
+    const std::size_t left = std::min(i - begin, 2 * half - right);
+    if (weights.empty() || left != last_left || right != last_right) weights = parabola_weights(left, right).*kind;
+    last_left = left;
+    last_right = right;
+    double sum = 0;
+    for (std::size_t k = 0; k <= left + right; ++k) sum += weights[k] * sample(i - left + k);
+    sums.push_back(sum);
+  }
+  return sums;
+}
+
 }  // namespace
 
 SlipMotion slip_motion(const Motion& motion, const SampleRange& samples) {
@@ -69,28 +93,20 @@ SlipMotion slip_motion(const Motion& motion, const SampleRange& samples) {
     return std::vector<double>(part.begin(), part.end());
   };
   SlipMotion moves{own(motion.relative_velocity), own(motion.acceleration)};
-  if (!moves.acceleration.empty()) return moves;
-  moves.acceleration.assign(samples.size(), 0.0);
-  const std::size_t half = half_window(motion, samples);
-  const std::size_t begin = samples.begin - std::min(samples.begin, 2 * half);
-  if (samples.end - begin < 3) return moves;
-  ParabolaWeights weights;
-  std::size_t last_left = 0, last_right = 0;
-  for (std::size_t i = samples.begin; i < samples.end; ++i) {
-    const std::size_t right = std::min(half, samples.end - 1 - i);
-    const std::size_t left = std::min(i - begin, 2 * half - right);
-    if (weights.value.empty() || left != last_left || right != last_right) weights = parabola_weights(left, right);
-    last_left = left;
-    last_right = right;
-    double value = 0, slope = 0;
-    for (std::size_t k = 0; k <= left + right; ++k) {
-      const std::size_t at = i - left + k;
-      value += weights.value[k] * motion.relative_velocity[at];
-      slope += weights.slope[k] * (motion.disc_velocity_at(at) - motion.relative_velocity[at]);
-    }
-    moves.velocity[i - samples.begin] = value;
-    moves.acceleration[i - samples.begin] = slope / motion.step;
+  if (motion.is_points()) return moves;
+  // A velocity that was made of another channel is as smooth as its noise demands; what few samples do is not known.
+  const bool was_made = !motion.velocity_std_error.empty() || !motion.acceleration.empty();
+  if (!was_made && samples.size() >= 4 * kHalfWindows.front()) {
+    std::vector<double> smooth =
+        sums_about(samples, half_window(motion, samples, kHalfWindows.front()), &ParabolaWeights::value,
+                   [&](std::size_t i) { return motion.relative_velocity[i]; });
+    if (!smooth.empty()) moves.velocity = std::move(smooth);
   }
+  if (!moves.acceleration.empty()) return moves;
+  moves.acceleration = sums_about(
+      samples, half_window(motion, samples, kWidestOfSlope), &ParabolaWeights::slope,
+      [&](std::size_t i) { return (motion.disc_velocity_at(i) - motion.relative_velocity[i]) / motion.step; });
+  moves.acceleration.resize(samples.size(), 0.0);
   return moves;
 }
 
