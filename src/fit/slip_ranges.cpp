@@ -56,8 +56,10 @@ void fill_stick_times(std::vector<Observations::SlipObservation>& slips, const s
 /// and those that a velocity which is late shows after friction has jumped.
 void trim_rest(const Motion& motion, SampleRange& samples) {
   const std::size_t least = samples.begin + samples.size() / 2;
+  const bool was_made = !motion.velocity_std_error.empty();  // of another channel: its window is no delay
   const double early = std::ceil(-motion.restick_delay / motion.step - 0.5);  // sampling makes half of one
-  if (early > 0) samples.end = std::max(least, samples.end - std::min(samples.end, static_cast<std::size_t>(early)));
+  if (early > 0 && !was_made)
+    samples.end = std::max(least, samples.end - std::min(samples.end, static_cast<std::size_t>(early)));
   while (samples.end > least &&
          std::abs(motion.relative_velocity[samples.end - 1]) < kSlowEnd * motion.velocity_noise) {
     --samples.end;

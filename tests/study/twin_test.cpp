@@ -102,8 +102,8 @@ TEST(Twin, FailsWhereSomethingIsHiddenAndAgreesOnceItIsAdded) {
   for (const Hiding& hiding : hidings) {
     const Twin twin = twin_of(hiding, hiding.effect);
     ASSERT_EQ(twin.columns.size(), 2u);
-    // In its own standard errors, which are wider under a law that does not hold.
-    EXPECT_GT(twin.rms_difference[0], 2) << hiding.effect;
+    // In its own standard errors, which are wider under a law that does not hold; twins that agree show 1 (above).
+    EXPECT_GT(twin.rms_difference[0], 1.5) << hiding.effect;
     EXPECT_LT(twin.rms_difference[1], 2) << hiding.effect;
     EXPECT_FALSE(twin.failures(0).empty()) << hiding.effect;
     EXPECT_LT(twin.failures(1).size(), 3u) << hiding.effect;
