@@ -94,9 +94,10 @@ SlipMotion slip_motion(const Motion& motion, const SampleRange& samples) {
   };
   SlipMotion moves{own(motion.relative_velocity), own(motion.acceleration)};
   if (motion.is_points()) return moves;
-  // A velocity that was made of another channel is as smooth as its noise demands; what few samples do is not known.
+  // A velocity that was made of another channel is as smooth as its noise demands; that of a drive may jump; what few
+  // samples do is not known.
   const bool was_made = !motion.velocity_std_error.empty() || !motion.acceleration.empty();
-  if (!was_made && samples.size() >= 4 * kHalfWindows.front()) {
+  if (motion.sticks && !was_made && samples.size() >= 4 * kHalfWindows.front()) {
     std::vector<double> smooth =
         sums_about(samples, half_window(motion, samples, kHalfWindows.front()), &ParabolaWeights::value,
                    [&](std::size_t i) { return motion.relative_velocity[i]; });
