@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <fstream>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 
 #include "tribofit/campaign/run_result.hpp"
@@ -9,6 +9,7 @@
 #include "tribofit/friction/state_evolution.hpp"
 #include "tribofit/ingest/conditions.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "tribofit/ingest/text_of_file.hpp"
 #include "tribofit/output/digits.hpp"
 #include "tribofit/output/text.hpp"
 #include "tribofit/version.hpp"
@@ -111,15 +112,10 @@ std::string paragraph_of(const Json& result, std::vector<std::string>& names) {
 
 std::string paragraph_of_file(const std::string& path, std::vector<std::string>& names) {
   const InputLocation where{path, 0, ""};
-  std::ifstream file(path);
-  if (!file) throw InputError("the result cannot be opened", "give a file that --json wrote", where);
+  const std::string text = text_of_file(path, std::uint64_t{1} << 30, "give a file that --json wrote");
+  if (is_nested_deeper(text)) throw InputError("is nested too deeply", "give a file that --json wrote", where);
   try {
-    const auto refuse_deep = [&](int depth, Json::parse_event_t, const Json&) {
-      constexpr int kDeepestJson = 64;  // far deeper ones would not fit on the stack
-      if (depth > kDeepestJson) throw InputError("is nested too deeply", "give a file that --json wrote", where);
-      return true;
-    };
-    return paragraph_of(Json::parse(file, refuse_deep), names);
+    return paragraph_of(Json::parse(text), names);
   } catch (const Json::exception&) {
     throw InputError("is not the result of one trace",
                      "give a file that 'identify --json' or 'identify diagnose --json' wrote", where);

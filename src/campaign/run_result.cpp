@@ -12,6 +12,7 @@
 #include "tribofit/campaign/batch.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/text_of_file.hpp"
+#include "tribofit/output/text.hpp"
 
 namespace tribofit {
 namespace {
@@ -86,7 +87,7 @@ bool is_whole(std::string_view text) {
 std::optional<Json> read_sealed(const std::string& path) {
   try {
     const std::string bytes = text_of_file(path, std::uint64_t{1} << 30, "name a result of a batch");
-    Json json = is_whole(bytes) ? Json::parse(bytes, nullptr, false) : Json();
+    Json json = is_whole(bytes) && !is_nested_deeper(bytes) ? Json::parse(bytes, nullptr, false) : Json();
     if (json.is_object()) return json;
   } catch (const InputError&) {  // it cannot be read
   }

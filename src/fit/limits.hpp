@@ -176,14 +176,15 @@ inline constexpr double kSmoothedAcceleration = 1.5e-3;
 /// Least scale of a force, over the largest: levels of friction may be five times the scale, and the largest is one.
 inline constexpr double kLeastScaleOfForce = 0.2;
 
-// ---- acceleration of the block
+// ---- motion of the block in a slip
 
-/// Half windows of the velocity and its slope [samples], each for slips of which it is this part or less a window, and
-/// the squares by which a window may differ from shorter ones, over those of noise alone. Wider: a mass that turns
-/// quickly is found too heavy (1.5 % where a drive turns within 20 samples); narrower: noise of the acceleration.
+/// Half windows of the velocity [samples]; part of a slip that each sample of the widest one takes (so that 0.03 of a
+/// slip is smoothed to either side, of its slope 0.015); and the squares by which a window may differ from shorter
+/// ones, over those of noise alone.
 inline constexpr std::array<std::size_t, 8> kHalfWindows = {20, 14, 10, 7, 5, 3, 2, 1};
 inline constexpr double kWindowOfSlip = 0.0015, kFlattened = 2;
-/// The widest of a slope: where a pull's inertia shows within few samples a wider one takes a part of it.
+/// The widest of a slope. Wider: a mass that turns quickly is found too heavy (1.5 % where a drive turns within 20
+/// samples); narrower: noise of the acceleration.
 inline constexpr std::size_t kWidestOfSlope = 10;
 /// Samples of a slip over which windows are compared.
 inline constexpr std::size_t kMostLookedAt = 8192;

@@ -42,17 +42,22 @@ bool follows(std::span<const double> velocity, std::size_t half, double noise) {
   return true;
 }
 
-/// The widest half window, up to some samples, that does not flatten what the velocity of a slip does.
-std::size_t half_window(const Motion& motion, const SampleRange& samples, std::size_t most) {
-  // The same part of a slip at any rate leaves about the same noise.
-  const double stretch = kWindowOfSlip * static_cast<double>(samples.size() * most);
-  auto half = static_cast<std::size_t>(std::clamp(std::round(stretch), 2.0, static_cast<double>(most)));
-  const std::size_t end = std::min(samples.end, samples.begin + kMostLookedAt);
-  if (end - samples.begin < 4 * half) return half;
+/// Velocity of the block in a slip, of a long one in its first samples: what windows are compared over.
+std::vector<double> block_velocity(const Motion& motion, const SampleRange& samples) {
   std::vector<double> velocity;
+  const std::size_t end = std::min(samples.end, samples.begin + kMostLookedAt);
   for (std::size_t i = samples.begin; i < end; ++i)
     velocity.push_back(motion.disc_velocity_at(i) - motion.relative_velocity[i]);
-  const double noise = std::max(motion.velocity_noise, roughness(velocity));
+  return velocity;
+}
+
+/// The widest half window, up to `most` samples, that does not flatten what the velocity of a slip of `length` samples
+/// does above its noise. Fewer than four of them are not compared.
+std::size_t half_window(std::span<const double> velocity, std::size_t length, std::size_t most, double noise) {
+  // The same part of a slip at any rate leaves about the same noise.
+  const double stretch = kWindowOfSlip * static_cast<double>(length * most);
+  auto half = static_cast<std::size_t>(std::clamp(std::round(stretch), 2.0, static_cast<double>(most)));
+  if (velocity.size() < 4 * half) return half;
   for (const std::size_t next : kHalfWindows) {
     if (next >= half) continue;
     if (follows(velocity, half, noise)) return half;
@@ -93,20 +98,22 @@ SlipMotion slip_motion(const Motion& motion, const SampleRange& samples) {
     return std::vector<double>(part.begin(), part.end());
   };
   SlipMotion moves{own(motion.relative_velocity), own(motion.acceleration)};
-  if (motion.is_points()) return moves;
-  // A velocity that was made of another channel is as smooth as its noise demands; that of a drive may jump; what few
-  // samples do is not known.
+  if (motion.is_points()) moves.acceleration.resize(samples.size(), 0.0);  // they have no time
+  const std::vector<double> velocity = block_velocity(motion, samples);
+  // A velocity that was made of another channel is as smooth as its noise demands, and that of a drive may jump.
   const bool was_made = !motion.velocity_std_error.empty() || !motion.acceleration.empty();
-  if (motion.sticks && !was_made && samples.size() >= 4 * kHalfWindows.front()) {
-    std::vector<double> smooth =
-        sums_about(samples, half_window(motion, samples, kHalfWindows.front()), &ParabolaWeights::value,
-                   [&](std::size_t i) { return motion.relative_velocity[i]; });
-    if (!smooth.empty()) moves.velocity = std::move(smooth);
+  const std::size_t half = half_window(velocity, samples.size(), kHalfWindows.front(), motion.velocity_noise);
+  if (motion.sticks && !was_made && samples.size() >= 4 * half) {
+    const auto read = [&](std::size_t i) { return motion.relative_velocity[i]; };
+    moves.velocity = sums_about(samples, half, &ParabolaWeights::value, read);
   }
   if (!moves.acceleration.empty()) return moves;
-  moves.acceleration = sums_about(
-      samples, half_window(motion, samples, kWidestOfSlope), &ParabolaWeights::slope,
-      [&](std::size_t i) { return (motion.disc_velocity_at(i) - motion.relative_velocity[i]) / motion.step; });
+  const auto scaled = [&](std::size_t i) {
+    return (motion.disc_velocity_at(i) - motion.relative_velocity[i]) / motion.step;
+  };
+  const double noise = std::max(motion.velocity_noise, roughness(velocity));
+  moves.acceleration = sums_about(samples, half_window(velocity, samples.size(), kWidestOfSlope, noise),
+                                  &ParabolaWeights::slope, scaled);
   moves.acceleration.resize(samples.size(), 0.0);
   return moves;
 }

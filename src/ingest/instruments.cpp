@@ -10,6 +10,7 @@
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/ingest/text_of_file.hpp"
 #include "tribofit/ingest/units.hpp"
+#include "tribofit/output/text.hpp"
 
 namespace tribofit {
 namespace {
@@ -80,14 +81,11 @@ class InstrumentsReader {
 
  private:
   Json parse() {
-    constexpr int kDeepestJson = 8;  // far deeper ones would not fit on the stack
     const std::string text = text_of_file(path_, kLongestLine, "name the JSON file that describes the instruments");
-    const auto follow_parser = [this](int depth, Json::parse_event_t event, Json& parsed) {
-      if (depth > kDeepestJson)
-        throw InputError("is nested too deeply", "describe the instruments by sections with values in them",
-                         {path_, 0, ""});
-      return follow(event, parsed);
-    };
+    if (is_nested_deeper(text))
+      throw InputError("is nested too deeply", "describe the instruments by sections with values in them",
+                       {path_, 0, ""});
+    const auto follow_parser = [this](int, Json::parse_event_t event, Json& parsed) { return follow(event, parsed); };
     try {
       return Json::parse(text, follow_parser, true, true);  // comments are allowed
     } catch (const Json::out_of_range&) {

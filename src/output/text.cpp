@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace tribofit {
 
 std::string printable(std::string_view text) {
@@ -35,6 +37,24 @@ std::string enumerated(const std::vector<std::string>& names, std::string_view l
 std::string capitalised(std::string text) {
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 32);
   return text;
+}
+
+bool is_nested_deeper(std::string_view json, int levels) {
+  int depth = 0;
+  for (std::size_t i = 0; i < json.size() && depth <= levels; ++i) {
+    const std::string_view rest = json.substr(i);
+    if (json[i] == '"') {
+      for (++i; i < json.size() && json[i] != '"'; ++i) i += json[i] == '\\' ? 1U : 0U;
+    } else if (rest.starts_with("//") || rest.starts_with("/*")) {
+      const std::string_view close = rest[1] == '/' ? "\n" : "*/";
+      i = std::min(json.size(), json.find(close, i + 2));
+    } else if (json[i] == '[' || json[i] == '{') {
+      ++depth;
+    } else if (json[i] == ']' || json[i] == '}') {
+      --depth;
+    }
+  }
+  return depth > levels;
 }
 
 }  // namespace tribofit

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "tribofit/ingest/input_error.hpp"
+#include "tribofit/output/text.hpp"
 
 namespace tribofit::workbench {
 
@@ -136,15 +137,9 @@ Json in_order(WorkbenchChoice choice) {
 }  // namespace
 
 Json parsed(std::string_view text, const std::string& what) {
-  bool deep = false;
-  const auto watch = [&](int depth, Json::parse_event_t, Json&) {
-    deep |= depth > kDeepest;
-    return depth <= kDeepest;
-  };
+  if (is_nested_deeper(text, kDeepest)) refuse(what + " is nested too deeply", "write it as this program does");
   try {
-    Json json = Json::parse(text.begin(), text.end(), watch);
-    if (deep) refuse(what + " is nested too deeply", "write it as this program does");
-    return json;
+    return Json::parse(text);
   } catch (const Json::exception& error) {
     refuse(what + " is not JSON: " + error.what(), "write it as this program does");
   }

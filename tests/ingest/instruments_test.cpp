@@ -51,8 +51,8 @@ TEST_F(InstrumentsFile, TheZeroMayBeAForce) {
 }
 
 TEST_F(InstrumentsFile, NestingThatNoStackHoldsIsRefused) {
-  for (const std::size_t levels : {20U, 60000U}) {
-    std::string json;
+  for (const std::size_t levels : {40U, 60000U}) {
+    std::string json = "// an odd \" in a comment\n";
     for (std::size_t k = 0; k < levels; ++k) json += "{\"a\": [";
     for (std::size_t k = 0; k < levels; ++k) json += "], \"b\": 1}";
     expect_refused(json, "is nested too deeply", "sections");

@@ -99,14 +99,20 @@ TEST(Twin, FailsWhereSomethingIsHiddenAndAgreesOnceItIsAdded) {
                                        {.effect = "stribeck-exponent", .parameters = {1.6}},
                                        {.effect = "sensor-inertia", .parameters = {0.2}},
                                        {.effect = "channel-delay", .parameters = {0.001}}};
-  for (const Hiding& hiding : hidings) {
-    const Twin twin = twin_of(hiding, hiding.effect);
-    ASSERT_EQ(twin.columns.size(), 2u);
-    // In its own standard errors, which are wider under a law that does not hold; twins that agree show 1 (above).
-    EXPECT_GT(twin.rms_difference[0], 1.5) << hiding.effect;
-    EXPECT_LT(twin.rms_difference[1], 2) << hiding.effect;
-    EXPECT_FALSE(twin.failures(0).empty()) << hiding.effect;
-    EXPECT_LT(twin.failures(1).size(), 3u) << hiding.effect;
+  for (Hiding hiding : hidings) {
+    // A few simulations give a standard error that differs by a fifth from draw to draw, so several records are taken.
+    constexpr std::uint64_t kRecords = 3;
+    double difference = 0;
+    for (hiding.seed = 1; hiding.seed <= kRecords; ++hiding.seed) {
+      const Twin twin = twin_of(hiding, hiding.effect);
+      ASSERT_EQ(twin.columns.size(), 2u);
+      difference += twin.rms_difference[0] / kRecords;
+      EXPECT_LT(twin.rms_difference[1], 2) << hiding.effect;
+      EXPECT_FALSE(twin.failures(0).empty()) << hiding.effect;
+      EXPECT_LT(twin.failures(1).size(), 3u) << hiding.effect;
+    }
+    // In its own standard errors, which are wider under a law that does not hold.
+    EXPECT_GT(difference, 2) << hiding.effect;
   }
 }
 

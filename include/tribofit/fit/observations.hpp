@@ -167,10 +167,11 @@ struct SlipMotion {
   std::vector<double> acceleration;  ///< of the block [m/s^2]
 };
 
-/// Savitzky-Golay parabolas (over a thirtieth of the slip, 3 to 21 samples, fewer where the wider window would flatten
-/// what the velocity does above its noise; O. V. Lepski, Theory Probab. Appl. 35 (1991) 454), whose window stops at
-/// re-stick, where the acceleration jumps. A law is evaluated at a velocity without its noise: the noise of a regressor
-/// biases what is fitted to it (W. A. Fuller, Measurement Error Models, 1987).
+/// Savitzky-Golay parabolas, over at most 6 % of the slip for the velocity (3 to 41 samples) and 3 % for its slope (3
+/// to 21), less where the wider window would flatten what the velocity does above its noise (O. V. Lepski, Theory
+/// Probab. Appl. 35 (1991) 454). Windows stop at re-stick, where the acceleration jumps. A law is evaluated at a
+/// velocity without its noise: the noise of a regressor biases what is fitted to it (W. A. Fuller, Measurement Error
+/// Models, 1987). Points, velocities made of other channels and motions that never stick keep v_r as it is.
 SlipMotion slip_motion(const Motion& motion, const SampleRange& samples);
 
 }  // namespace tribofit

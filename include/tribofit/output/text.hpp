@@ -21,4 +21,9 @@ std::string enumerated(const std::vector<std::string>& names, std::string_view l
 /// "Most"; the rest of the text as it is.
 std::string capitalised(std::string text);
 
+/// Whether brackets and braces of a JSON text, comments allowed, are nested deeper than that. Far deeper ones are copied
+/// by a recursion that no stack holds, so this is asked before parsing; no file of this program has as many levels as
+/// the default. Cost: one pass.
+bool is_nested_deeper(std::string_view json, int levels = 64);
+
 }  // namespace tribofit
