@@ -6,6 +6,7 @@
 
 #include "assessment.hpp"
 #include "limits.hpp"
+#include "observing.hpp"
 #include "tribofit/execution/parallel.hpp"
 #include "tribofit/friction/evaluate.hpp"
 #include "tribofit/segmentation/strokes.hpp"
@@ -27,7 +28,7 @@ std::span<const double> FullRecord::friction(const Observations::SlipObservation
 }
 
 bool FullRecord::is_spoilt(const Observations::SlipObservation& range, std::size_t i) const {
-  return records_[range.record].motion->has_fault(range.samples.begin + i, SampleFault::any);
+  return !is_evidence(*records_[range.record].motion, range, range.samples.begin + i);
 }
 
 double FullRecord::weight(const Observations::SlipObservation& range, std::size_t i) const {

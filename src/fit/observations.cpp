@@ -37,7 +37,7 @@ class Reducer {
   void each(Write&& write) const {
     for (const auto& slip : slips_) {
       for (std::size_t i = slip.samples.begin; i < slip.samples.end; i += per_value_) {
-        write(i, std::min(i + per_value_, slip.samples.end));
+        write(slip, i, std::min(i + per_value_, slip.samples.end));
       }
     }
   }
@@ -54,7 +54,7 @@ class Reducer {
       double sum = 0, good = 0, count = 0;
       for (std::size_t i = begin; i < end; ++i) {
         sum += values[i];
-        if (motion_.has_fault(slip.samples.begin + i, SampleFault::any)) continue;
+        if (!is_evidence(motion_, slip, slip.samples.begin + i)) continue;
         good += values[i];
         ++count;
       }
@@ -332,9 +332,9 @@ Observations observe_motion(const Motion& motion, const Segmentation& segmentati
   out.friction = reduce.means(motion.friction);
   out.weight.reserve(values);
   out.root_weight.reserve(values);
-  reduce.each([&](std::size_t begin, std::size_t end) {
+  reduce.each([&](const Observations::SlipObservation& slip, std::size_t begin, std::size_t end) {
     std::size_t good = 0;
-    for (std::size_t i = begin; i < end; ++i) good += motion.has_fault(i, SampleFault::any) ? 0U : 1U;
+    for (std::size_t i = begin; i < end; ++i) good += is_evidence(motion, slip, i) ? 1U : 0U;
     out.weight.push_back(good > 0 ? static_cast<double>(good) : kWeightOfSpoilt);
     out.root_weight.push_back(std::sqrt(out.weight.back()));
   });

@@ -18,6 +18,11 @@ namespace tribofit {
 std::vector<Observations::SlipObservation> slip_ranges(const Motion& motion, const Segmentation& segmentation,
                                                        const SensorNoise& noise = {});
 
+/// Whether a sample of a slip is evidence: it was read, and its friction is the law's.
+inline bool is_evidence(const Motion& motion, const Observations::SlipObservation& slip, std::size_t sample) {
+  return sample < slip.law_end && !motion.has_fault(sample, SampleFault::any);
+}
+
 /// What the values reach: speeds and friction.
 void set_extent(const Motion& motion, Observations& out);
 

@@ -51,19 +51,22 @@ void fill_stick_times(std::vector<Observations::SlipObservation>& slips, const s
   }
 }
 
-/// Leaves out the last samples of a slip at which friction is the spring's, far from the law's: those that coloured
-/// noise kept above the threshold of stick (a slip ends so steeply that hardly one sample of it is as slow as that),
-/// and those that a velocity which is late shows after friction has jumped.
+/// Leaves out the last samples of a slip that coloured noise kept above the threshold of stick: there friction is the
+/// spring's, far from the law's. A slip ends so steeply that hardly one sample of it is as slow as that.
 void trim_rest(const Motion& motion, SampleRange& samples) {
   const std::size_t least = samples.begin + samples.size() / 2;
-  const bool was_made = !motion.velocity_std_error.empty();  // of another channel: its window is no delay
-  const double early = std::ceil(-motion.restick_delay / motion.step - 0.5);  // sampling makes half of one
-  if (early > 0 && !was_made)
-    samples.end = std::max(least, samples.end - std::min(samples.end, static_cast<std::size_t>(early)));
   while (samples.end > least &&
          std::abs(motion.relative_velocity[samples.end - 1]) < kSlowEnd * motion.velocity_noise) {
     --samples.end;
   }
+}
+
+/// End of the samples of a complete slip at which friction is the law's: a velocity that is late shows a slip after
+/// friction has jumped. One that was made of another channel has a window and no delay.
+std::size_t law_end(const Motion& motion, const SampleRange& samples) {
+  const double early = std::ceil(-motion.restick_delay / motion.step - 0.5);  // sampling makes half of one
+  if (!(early > 0) || !motion.velocity_std_error.empty()) return samples.end;
+  return samples.end - std::min(samples.size() / 2, static_cast<std::size_t>(early));
 }
 
 /// Takes out of each stick time what the levels of its own re-stick and break-away made of it. A break-away that is
@@ -118,6 +121,7 @@ Observations::SlipObservation slip_range(const Motion& motion, const Segmentatio
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   Observations::SlipObservation range;
   range.samples = samples;
+  range.law_end = samples.end;
   range.segment = static_cast<std::size_t>(&cycle - segmentation.cycles.data());
   range.direction = cycle.direction;
   const double speed = motion.conditions.speed.known() ? motion.conditions.speed.value : 0;
@@ -177,6 +181,7 @@ std::vector<Observations::SlipObservation> slip_ranges(const Motion& motion, con
       if (!pieces && cycle.slip_complete) trim_rest(motion, samples);
       if (samples.size() == 0) continue;
       ranges.push_back(slip_range(motion, segmentation, cycle, samples, from_stick && k == 0, noise));
+      if (!pieces && cycle.slip_complete) ranges.back().law_end = law_end(motion, samples);
       const bool selected = pieces ? segmentation.is_selected(samples) : segmentation.is_selected(cycle);
       is_selected.push_back(selected && good_samples(motion, samples) >= kShortestSlip);
     }

@@ -190,7 +190,17 @@ INSTANTIATE_TEST_SUITE_P(
     NoisyVelocity, LoadedRecord,
     testing::Values(Loaded{"viscous", 0.5,
                            with_noisy_velocity({.fractional = true, .decay = 95, .viscous = 0.5, .seed = 41})},
-                    Loaded{"channel-delay", 0.5e-3, with_noisy_velocity({.delay = 0.5e-3, .seed = 42})}),
-    [](const auto& hidden) { return (hidden.index == 0 ? "viscous" : "late"); });
+                    Loaded{"channel-delay", 0.5e-3, with_noisy_velocity({.delay = 0.5e-3, .seed = 42})},
+                    Loaded{"channel-delay", -0.3e-3, with_noisy_velocity({.delay = -0.3e-3, .seed = 43})}),
+    [](const auto& hidden) {
+      return (hidden.index == 0 ? "viscous" : hidden.index == 1 ? "late" : "early");
+    });
+
+/// Friction that is read before the velocity has jumped already where the last samples of a slip seem to be.
+INSTANTIATE_TEST_SUITE_P(
+    Early, LoadedRecord,
+    testing::Values(Loaded{"channel-delay", -0.3e-3, {.delay = -0.3e-3, .rate = 20000, .seed = 43}},
+                    Loaded{"channel-delay", -1e-3, {.delay = -1e-3, .seed = 44}}),
+    [](const auto& hidden) { return (hidden.index == 0 ? "a_little" : "by_much"); });
 
 }  // namespace

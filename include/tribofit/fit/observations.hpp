@@ -79,9 +79,10 @@ struct Observations {
   struct SlipObservation : SlipFacts {
     std::size_t begin = 0, end = 0;  ///< values of this slip
     SampleRange samples;             ///< the same in samples of the Motion
-    std::size_t cycle = 0;           ///< unit of evidence it belongs to, from 0, in order of time
-    std::size_t segment = 0;         ///< index in Segmentation::cycles
-    double break_away_friction = 0;  ///< |mu| at break-away; NaN when there is none
+    std::size_t law_end = 0;  ///< from this sample on friction is the spring's again, if v_r is late; no evidence
+    std::size_t cycle = 0;    ///< unit of evidence it belongs to, from 0, in order of time
+    std::size_t segment = 0;  ///< index in Segmentation::cycles
+    double break_away_friction = 0;                                    ///< |mu| at break-away; NaN when there is none
     double creep_friction = std::numeric_limits<double>::quiet_NaN();  ///< |mu| read where the lead ends; NaN: no lead
     double break_away_root_weight = 1;  ///< of its residual beside that of a sample: less where its time is not known
     std::size_t lead_begin = 0, lead_end = 0;        ///< of the lead channels below
