@@ -33,7 +33,8 @@ std::vector<double> noise_of_stick(const Record& record, const Observations::Sli
   const SampleRange& stick = record.segmentation->cycles[slip.segment].stick;
   const auto part = static_cast<std::size_t>(limits::kEndOfStick * static_cast<double>(stick.size()));
   if (!slip.from_stick || part == 0) return {};
-  std::vector<double> noise = slip_motion(*record.motion, {stick.begin + part, stick.end - part}).velocity;
+  const std::size_t begin = stick.begin + part, end = std::min(stick.end - part, begin + slip.samples.size());
+  std::vector<double> noise = slip_motion(*record.motion, {begin, end}).velocity;
   const StraightLine line = fit_line(noise);
   for (std::size_t i = 0; i < noise.size(); ++i) noise[i] -= line.at(static_cast<double>(i));
   return noise;

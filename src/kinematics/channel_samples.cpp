@@ -64,8 +64,9 @@ std::vector<SampleSpan> find_outliers(const ChannelSamples& channel, const Chann
   for (std::size_t i = 0; i < x.size(); ++i) {
     const bool is_marker = channel.is_beyond(x[i]);
     if (!is_marker && (i == 0 || !(change(i) > far))) continue;
-    // What leaves again at once has not been back.
-    const bool goes_on = !is_marker && !outliers.empty() && outliers.back().end + 1 == i && outliers.back().begin > 0;
+    // What leaves again sooner than it was away has not been back.
+    const bool goes_on = !is_marker && !outliers.empty() && outliers.back().begin > 0 &&
+                         i <= outliers.back().end + outliers.back().size();
     const std::size_t begin = goes_on ? outliers.back().begin : i;
     std::size_t end = goes_on ? i : i + 1, equal = 1;
     if (is_marker) {

@@ -21,9 +21,8 @@ using ::testing::HasSubstr;
 /// With noise of friction of 0.003 and of the velocity of 0.02 mm/s.
 Trace recorded(unsigned seed, double rpm = 4) {
   truth::Rig rig;
-  rig.duration = 8;
+  rig.duration = 8, rig.rpm = rpm;
   rig.scatter = 0.004;
-  rig.rpm = rpm;
   rig.friction_noise = 0.003, rig.velocity_noise = 2e-5;
   rig.seed = seed;
   return truth::simulate(rig).trace;
@@ -98,11 +97,12 @@ TEST(Recorders, AVelocityThatDropsOutIsLeftOutThere) {
     }
     ASSERT_GT(lost.size(), 500U);
     const double disc = trace.conditions.speed.value * trace.conditions.radius.value;
+    const double near = reads_anything ? 2e-3 : 1e-3;  // anything may come near by chance
     const Motion motion = compute_motion(std::move(trace));
     std::size_t wrong = 0;
     for (const std::size_t i : lost) {
       if (i < motion.trimmed || i - motion.trimmed >= motion.size()) continue;
-      wrong += std::abs(motion.relative_velocity[i - motion.trimmed] - (disc - sound.velocity[i])) > 1e-3 ? 1U : 0U;
+      wrong += std::abs(motion.relative_velocity[i - motion.trimmed] - (disc - sound.velocity[i])) > near ? 1U : 0U;
     }
     EXPECT_LT(wrong, lost.size() / 50);
     EXPECT_THAT(item(motion, "drop-outs").message, HasSubstr("jumps away and back"));
