@@ -68,7 +68,8 @@ DrawnLaws drawn_laws(std::span<const Fit> fits, std::size_t best, std::size_t mo
   for (const Fit& fit : fits) {
     if (!fit.parameters.empty() && (&fit == &fits[best] || wanted(fit))) drawn.models.push_back(&fit);
   }
-  std::ranges::stable_partition(drawn.models, [&](const Fit* fit) { return fit == &fits[best]; });
+  const auto is_best = [&](const Fit* fit) { return fit == &fits[best]; };
+  std::stable_partition(drawn.models.begin(), drawn.models.end(), is_best);
   drawn.models.resize(std::min(drawn.models.size(), most));
   std::vector<const Fit*> all = drawn.models;
   for (const Fit& fit : others) all.push_back(&fit);
