@@ -112,28 +112,34 @@ std::string describe(const char* name, const Band& band) {
 
 }  // namespace
 
-HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double> declared, bool undone, bool sticks) {
+HealthItem check_sagging(const RestModel& rest, std::optional<double> declared, bool undone, bool sticks) {
   HealthItem item{health_check::kSaggingPlateau, Status::ok, health_check::not_checked("no stick plateau to look at")};
   if (declared) {
     item.message = fmt::format("the declared high-pass of {} Hz is corrected", general(*declared, 3));
-  } else if (undone) {
+  } else if (rest.high_pass_is_found) {
+    item.status = undone ? Status::warning : Status::problem;
+    item.message =
+        fmt::format("the plateau sags like that of a first-order high-pass at {} +/- {} Hz ({} plateaus); {}",
+                    fixed(rest.high_pass.value, 3), fixed(rest.high_pass.std_error, 4), rest.sticks,
+                    undone ? "corrected" : "not corrected");
+  } else if (rest.drive.any()) {
     item.status = Status::warning;
+    item.message =
+        "the plateau falls while friction rises, and friction is straight over the way of the block: the "
+        "disc slows down, it is not the reading";
+  } else if (rest.crosstalk.any()) {
+    item.status = Status::warning;
+    item.message =
+        "the plateau follows friction, which is straight over time, and the block seems to go away: friction "
+        "crosses into the reading of the velocity";
+  } else if (rest.creep > 0) {
     item.message = fmt::format(
-        "the plateau sags like that of a first-order high-pass at {} +/- {} Hz ({} plateaus); "
-        "corrected",
-        fixed(estimate.corner, 3), fixed(estimate.std_error, 4), estimate.plateaus);
-  } else if (estimate.significant) {
-    item.status = Status::problem;
-    item.message = fmt::format("the plateau sags like that of a first-order high-pass at {} +/- {} Hz; not corrected",
-                               fixed(estimate.corner, 3), fixed(estimate.std_error, 4));
-  } else if (estimate.creeping) {
-    item.message = fmt::format(
-        "the plateau falls faster towards break-away (as a high-pass: {} Hz in its first half, "
-        "{} Hz in its second): creep of the contact, no high-pass",
-        fixed(estimate.first_half, 3), fixed(estimate.second_half, 3));
-  } else if (estimate.plateaus >= kFewestForMedian) {
+        "the plateau falls faster towards break-away: the contact creeps, no high-pass (its speed "
+        "varies by {} %)",
+        fixed(100 * rest.creep, 2));
+  } else if (rest.high_pass.std_error > 0) {
     item.message = fmt::format("plateaus are level: a high-pass would have its corner at {} +/- {} Hz ({} plateaus)",
-                               fixed(estimate.corner, 4), fixed(estimate.std_error, 4), estimate.plateaus);
+                               fixed(rest.high_pass.value, 4), fixed(rest.high_pass.std_error, 4), rest.sticks);
   } else if (sticks) {
     item.message = health_check::not_checked("too few plateaus to look for a high-pass");
   }
@@ -238,13 +244,13 @@ HealthItem check_revolutions(const Motion& motion) {
   return item;
 }
 
-HealthItem check_speed_ripple(const Motion& motion, const RippleEstimate& estimate) {
+HealthItem check_speed_ripple(const Motion& motion, const RestModel& rest) {
   HealthItem item{health_check::kSpeedRipple, Status::ok,
                   health_check::not_checked("no stick plateaus to follow over the disc angle")};
   if (!motion.sticks || motion.velocity_kind != VelocityKind::block) return item;
-  const DiscRipple& ripple = estimate.ripple;
+  const DiscRipple& ripple = rest.ripple;
   if (ripple.order == 0) {
-    const bool recorded = !motion.disc_velocity.empty();
+    const bool recorded = !motion.disc_velocity.empty() && !rest.drive.any();
     item.message = recorded ? "the speed of the disc is recorded"
                             : health_check::not_checked("less than two revolutions or too few plateaus");
     return item;
@@ -252,8 +258,8 @@ HealthItem check_speed_ripple(const Motion& motion, const RippleEstimate& estima
   item.message =
       fmt::format("the plateau follows the disc angle by {} % {} a revolution (+/- {} %, {} plateaus)",
                   fixed(100 * ripple.amplitude, 2), ripple.order == 1 ? "once" : fmt::format("{} times", ripple.order),
-                  fixed(100 * ripple.amplitude_std_error, 2), estimate.plateaus);
-  if (!estimate.significant) return item;
+                  fixed(100 * ripple.amplitude_std_error, 2), rest.sticks);
+  if (!rest.ripple_is_found) return item;
   item.status = Status::warning;
   item.message += motion.speed_ripple.order > 0 ? "; the speed of the disc ripples; corrected"
                                                 : "; the speed of the disc ripples; not corrected";

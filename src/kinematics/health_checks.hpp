@@ -5,11 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "high_pass.hpp"
 #include "low_pass.hpp"
 #include "plateau.hpp"
 #include "plateau_search.hpp"
-#include "ripple.hpp"
+#include "rest_model.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/ingest/trace.hpp"
 #include "tribofit/kinematics/motion.hpp"
@@ -17,7 +16,7 @@
 namespace tribofit::kinematics {
 
 /// What became of the high-pass search. `declared` is the declared corner, if any.
-HealthItem check_sagging(const HighPassEstimate& estimate, std::optional<double> declared, bool undone, bool sticks);
+HealthItem check_sagging(const RestModel& rest, std::optional<double> declared, bool undone, bool sticks);
 
 /// Frequency up to which friction and velocity rise above their floor, and whether they are filtered above it.
 /// velocity: where it was measured; restick: what it showed where it comes to rest.
@@ -29,7 +28,7 @@ HealthItem check_friction_zero(const Motion& motion);
 HealthItem check_revolutions(const Motion& motion);
 
 /// What became of the search for a ripple of the disc's speed.
-HealthItem check_speed_ripple(const Motion& motion, const RippleEstimate& estimate);
+HealthItem check_speed_ripple(const Motion& motion, const RestModel& rest);
 
 /// v_r as measured against rest in stick and, on average, omega r.
 HealthItem check_measured_velocity(const Motion& motion, const Plateaus& plateaus, std::size_t factor);

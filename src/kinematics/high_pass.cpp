@@ -4,66 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "limits.hpp"
-#include "tribofit/statistics/estimate.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
 
 namespace tribofit::kinematics {
-namespace {
-
-// Median and its standard error from the spread of the values.
-Estimate robust_centre(const std::vector<double>& values) {
-  Estimate centre;
-  centre.value = median(values);
-  const double deviation = median_absolute_deviation(values, centre.value);
-  centre.std_error = 1.2533 * kSigmaPerMad * deviation / std::sqrt(static_cast<double>(values.size()));
-  return centre;
-}
-
-/// A straight line through exp(-u t/T), 0 < t < T, falls over its mean by 1 - u^2/60 of the rate, to fourth order.
-double corner_of(std::span<const double> part, double block_step, double disc_slope) {
-  const StraightLine line = fit_line(part);
-  const double rate = -(line.slope / block_step - disc_slope) / line.value;
-  const double u = rate * block_step * static_cast<double>(part.size());
-  return rate * (1 + u * u / 60) / (2 * std::numbers::pi);
-}
-
-}  // namespace
-
-HighPassEstimate estimate_high_pass(const BlockMeans& velocity, const Plateaus& plateaus,
-                                    std::span<const double> disc_slope) {
-  HighPassEstimate estimate;
-  std::vector<double> whole, first, second, lengths;
-  const std::span<const double> v(velocity.mean);
-  const double usual = std::abs(plateaus.level);
-  for (std::size_t r = 0; r < plateaus.runs.size(); ++r) {
-    const StickPlateau& run = plateaus.runs[r];
-    const std::size_t length = run.inner_end() - run.inner_begin();
-    if (length < 8 || std::abs(run.level) < 0.2 * usual) continue;
-    const auto inner = v.subspan(run.inner_begin(), length);
-    const double slope = disc_slope.empty() ? 0 : disc_slope[r];
-    whole.push_back(corner_of(inner, velocity.step, slope));
-    first.push_back(corner_of(inner.first(length / 2), velocity.step, slope));
-    second.push_back(corner_of(inner.last(length / 2), velocity.step, slope));
-    lengths.push_back(static_cast<double>(run.size()) * velocity.step);
-  }
-  estimate.plateaus = whole.size();
-  if (whole.size() < 3) return estimate;
-  const Estimate all = robust_centre(whole), a = robust_centre(first), b = robust_centre(second);
-  estimate.corner = all.value;
-  estimate.std_error = all.std_error;
-  estimate.first_half = a.value;
-  estimate.second_half = b.value;
-  const double sag = (2 * std::numbers::pi) * all.value * median(std::move(lengths));
-  const bool clear = all.value > kSignificance * all.std_error && sag > kLeastSag && sag < kLargestSag;
-  const bool same = std::abs(a.value - b.value) < 0.2 * all.value + 3 * std::hypot(a.std_error, b.std_error) &&
-                    a.value > 0.5 * all.value && b.value > 0.5 * all.value;
-  estimate.significant = clear && same;
-  estimate.creeping = clear && !same;
-  return estimate;
-}
-
 HighPassTerms restoring_terms(const BlockMeans& velocity, const Plateaus& plateaus, double corner, double plateau,
                               std::span<const double> disc) {
   HighPassTerms terms;

@@ -79,36 +79,33 @@ inline constexpr std::size_t kLoneLineAbove = 4, kLoneLineBins = 16;
 /// Corner of one channel over that of the other, from which their filters differ.
 inline constexpr double kFiltersDiffer = 1.5;
 
-// ---- high-pass of the vibrometer
-/// Fall of a plateau over its duration, 2 pi f_c t, over the level: below the first a high-pass does not matter and is
-/// lost in what creep does; above the second no plateau is left.
-inline constexpr double kLeastSag = 0.01, kLargestSag = 3;
-
-/// Standard errors by which a high-pass or a ripple must be there. What is undone changes every sample, and levels of
-/// plateaus wander more than their scatter shows.
+/// Standard errors by which what is undone must be there: it changes every sample, and levels of plateaus wander more
+/// than their scatter shows.
 inline constexpr double kSignificance = 6;
 
-// ---- ripple of the disc
-inline constexpr int kHighestOrder = 6;
-/// Of the usual plateau, below which one is too short to show a level; fall of the plateaus over their level, and over
-/// its standard error, from which the contact creeps.
-inline constexpr double kShortestPlateau = 0.25, kLeastCreep = 5e-4, kCreepErrors = 4;
-inline constexpr double kFittable = 1e-8;  // reciprocal condition of the fit to the levels: below, rounding decides
-/// Standard deviations from which a level is left out of the next fit, and part of them that must remain.
-inline constexpr double kFarLevel = 5, kLevelsKept = 0.7;
-/// Rounding of a level; correlation from plateau to plateau that some dozens can show; and of its size, by which a
-/// ripple may differ between the halves of the record: creep and wear change it by less.
-inline constexpr double kRoundingOfLevel = 1e-12, kMostCorrelation = 0.95, kHalvesOfRipple = 0.35;
+// ---- readings at rest, see RestModel
+/// What a term must change over the level: less does not matter to the law (drive, high-pass, ripple); creep of the
+/// contact from which other terms are doubted. And of its size, by which it may differ between halves of a record.
+inline constexpr double kLeastOfRest = 0.005, kLeastCreep = 5e-4, kHalvesOfRest = 0.35;
+/// Of the usual plateau, below which one is too short to show a level; pieces of one, as many as show how it bends.
+inline constexpr double kShortestPlateau = 0.25;
+inline constexpr std::size_t kMostPieces = 16;
+inline constexpr double kFittable = 1e-8;  // reciprocal condition of the fit: below, rounding decides
+/// Standard deviations from which a level is left out of the next fit, and part of them that must remain; rounding.
+inline constexpr double kFarLevel = 5, kLevelsKept = 0.7, kRoundingOfLevel = 1e-9;
+/// Time constants of a drive that are tried, over the usual stick, each so many times the one before.
+inline constexpr double kFastestDrive = 0.02, kSlowestDrive = 2, kNextDrive = 1.4;
+/// Static friction over the highest in the middle of a stick, as it may be where the contact creeps.
+inline constexpr double kStaticOverHighest[] = {1.01, 1.03, 1.06, 1.1, 1.2};
+inline constexpr int kHighestOrder = 6;  // of a ripple
 /// Revolutions between the middles of the first and the last plateau, of two recorded ones: with fewer a drift looks
 /// like a ripple.
 inline constexpr double kFewestRevolutions = 1.95;
 /// Plateaus in all, for at most six coefficients, and in a period of the ripple, so that it is not an alias.
 inline constexpr std::size_t kFewestPlateaus = 12;
 inline constexpr double kFewestPlateausAPeriod = 4;
-/// Ripples over the mean speed: a smaller one does not matter to the friction, a larger one is no ripple.
-inline constexpr double kLeastRipple = 0.005, kLargestRipple = 0.25;
-/// Part of the variance of the levels that it explains: else something else moves them more.
-inline constexpr double kLeastExplained = 0.5;
+/// Of the mean speed: by more a disc neither swings nor slows down.
+inline constexpr double kMostOfDisc = 0.25;
 
 // ---- plateau over omega r
 /// What sampling and the corner leave in the level of a restored plateau, over the level; and standard error of the

@@ -14,7 +14,6 @@
 #include "motion_stages.hpp"
 #include "plateau_ratio.hpp"
 #include "records_without_motion.hpp"
-#include "ripple.hpp"
 #include "spring_slider.hpp"
 #include "tribofit/execution/parallel.hpp"
 #include "tribofit/execution/stop.hpp"
@@ -89,15 +88,30 @@ void MotionStages::find_direction() {
   find_plateau();
 }
 
-void MotionStages::undo_high_pass() {
+/// What the velocity reads at rest, before the speed of the disc need be known.
+void MotionStages::read_at_rest() {
   const std::optional<Declared>& stated = instruments_.vibrometer.high_pass;
   if (is_block() && stated) declared_high_pass_ = stated->value;
-  if (is_block() && search_.sticks) {
-    sag_ = kinematics::estimate_high_pass(search_.blocks, search_.plateaus, kinematics::disc_slopes(search_));
-  }
-  if (!declared_high_pass_ && !(sag_.significant && options_.undo_high_pass)) return;
-  motion_.high_pass = declared_high_pass_ ? *declared_high_pass_ : sag_.corner;
-  motion_.high_pass_std_error = declared_high_pass_ ? stated->uncertainty : sag_.std_error;
+  if (!is_block() || !search_.sticks) return;
+  positions_ = kinematics::positions_in_plateaus(trace_.time, trace_.velocity, search_, threads_);
+  rest_ = kinematics::fit_rest(trace_, search_,
+                               {.high_pass = true, .crosstalk = !stated, .drive = !stated && speed_is_constant()},
+                               kinematics::mean_velocity(positions_));
+  if (!rest_.crosstalk.any() || !options_.undo_distortions) return;
+  motion_.velocity_crosstalk = rest_.crosstalk;
+  for (std::size_t i = 0; i < trace_.size(); ++i) trace_.velocity[i] -= rest_.crosstalk.value * trace_.friction[i];
+  motion_.notes.push_back(fmt::format("velocity: it reads {} mm/s for each unit of friction, taken off",
+                                      general(1e3 * rest_.crosstalk.value, 3)));
+  positions_ = {};
+  find_plateau();
+}
+
+void MotionStages::undo_high_pass() {
+  const std::optional<Declared>& stated = instruments_.vibrometer.high_pass;
+  if (!declared_high_pass_ && !(rest_.high_pass_is_found && options_.undo_high_pass)) return;
+  motion_.high_pass = declared_high_pass_ ? *declared_high_pass_ : rest_.high_pass.value;
+  motion_.high_pass_std_error = declared_high_pass_ ? stated->uncertainty : rest_.high_pass.std_error;
+  positions_ = {};
   const double level = disc_.known && speed_is_constant() ? disc_.constant : disc_.known ? 0 : std::nan("");
   kinematics::restore(
       trace_.velocity, motion_.step,
@@ -145,26 +159,55 @@ void MotionStages::take_speed_from_plateau() {
   }
 }
 
-void MotionStages::undo_ripple() {
-  ripple_ = kinematics::find_ripple(trace_, search_, disc_, speed_was_stated_);
-  undoes_ripple_ = ripple_.significant && options_.undo_speed_ripple;
-  if (!undoes_ripple_) return;
-  const DiscRipple& ripple = motion_.speed_ripple = ripple_.ripple;
-  if (motion_.high_pass > 0) undo_ripple_in_high_pass();
-  kinematics::flatten(search_, ripple_, kinematics::steady_speed(trace_), trace_.time);
+/// A disc that does not turn at one speed: it follows its angle, or slows down under friction.
+void MotionStages::follow_disc() {
+  if (!is_block() || !search_.sticks || !speed_is_constant()) return;
+  double omega = kinematics::steady_speed(trace_);
+  const bool slows = rest_.drive.any() && motion_.high_pass == 0;
+  // A speed that was read off the plateau is read off again without the ripple.
+  const bool is_read = trace_.conditions.speed.source == "plateau" && trace_.conditions.radius.known();
+  constexpr int kRounds = 3;
+  for (int round = 0; round == 0 || (is_read && round < kRounds); ++round) {
+    disc_at_rest_ =
+        kinematics::fit_rest(trace_, search_, {.drive = slows, .disc_speed = std::abs(omega) > 0 ? omega : 0}, {});
+    if (is_read && disc_at_rest_.level != 0) omega = disc_at_rest_.level / trace_.conditions.radius.value;
+  }
+  const bool found = disc_at_rest_.ripple_is_found || disc_at_rest_.drive.any();
+  follows_disc_ = found && options_.undo_speed_ripple;
+  if (!found) return;
+  if (!speed_was_stated_) disc_.constant = disc_at_rest_.level;
+  if (is_read) trace_.conditions.speed.value = omega;
+  if (!follows_disc_) return;
+  if (motion_.high_pass > 0) take_disc_off_high_pass();
+  const std::vector<double> factor = kinematics::disc_factor(disc_at_rest_, omega, trace_, motion_.step);
+  kinematics::flatten(search_, factor);
   plateau_ = kinematics::final_level(search_.plateaus);
+  if (disc_at_rest_.ripple_is_found) {
+    const DiscRipple& ripple = motion_.speed_ripple = disc_at_rest_.ripple;
+    motion_.notes.push_back(
+        fmt::format("disc: its speed follows its angle by {} +/- {} %, {} a revolution ({} plateaus); omega r "
+                    "follows it",
+                    fixed(100 * ripple.amplitude, 2), fixed(100 * ripple.amplitude_std_error, 2),
+                    ripple.order == 1 ? "once" : fmt::format("{} times", ripple.order), disc_at_rest_.sticks));
+  }
+  if (!disc_at_rest_.drive.any()) return;
+  // Over its speed without friction.
+  const Estimate& drive = disc_at_rest_.drive;
+  const double free = disc_at_rest_.level - drive.value * disc_at_rest_.friction_at_rest;
+  motion_.drive_compliance = {-drive.value / free, drive.std_error / std::abs(free)};
+  motion_.drive_time = disc_at_rest_.drive_time;
   motion_.notes.push_back(
-      fmt::format("disc: its speed follows its angle by {} +/- {} %, {} a revolution ({} plateaus); omega r "
-                  "follows it",
-                  fixed(100 * ripple.amplitude, 2), fixed(100 * ripple.amplitude_std_error, 2),
-                  ripple.order == 1 ? "once" : fmt::format("{} times", ripple.order), ripple_.plateaus));
+      fmt::format("disc: it slows down by {} +/- {} % for each unit of friction, within {} ms; "
+                  "omega r follows it",
+                  fixed(100 * motion_.drive_compliance.value, 2), fixed(100 * motion_.drive_compliance.std_error, 2),
+                  general(1e3 * motion_.drive_time, 2)));
 }
 
 /// The integration constants of an undone high-pass came from plateaus with the ripple on them.
-void MotionStages::undo_ripple_in_high_pass() {
-  const double shift = disc_.constant - ripple_.level;
+void MotionStages::take_disc_off_high_pass() {
+  const double shift = disc_.constant - disc_at_rest_.level;
   for (std::size_t i = 0; i < trace_.size(); ++i) {
-    trace_.velocity[i] += shift - ripple_.drift * (trace_.time[i] - ripple_.middle);
+    trace_.velocity[i] += shift - disc_at_rest_.drift * (trace_.time[i] - disc_at_rest_.middle);
   }
   find_plateau();
 }
@@ -186,7 +229,10 @@ std::size_t MotionStages::run_up() const {
 void MotionStages::make_relative_motion() {
   run_up_ = run_up();
   const std::size_t head = std::max(lost_.head, options_.trim ? run_up_ : 0);
-  if (undoes_ripple_) kinematics::impose_ripple(trace_, disc_, ripple_, kinematics::steady_speed(trace_));
+  if (follows_disc_) {
+    const double omega = kinematics::steady_speed(trace_);
+    kinematics::impose(kinematics::disc_factor(disc_at_rest_, omega, trace_, motion_.step), omega, trace_, disc_);
+  }
   if (is_block()) kinematics::make_relative(trace_.velocity, disc_, threads_);
   const std::pair<std::vector<double>*, std::vector<double>*> channels[] = {
       {&trace_.time, &motion_.time},
@@ -213,7 +259,7 @@ void MotionStages::make_relative_motion() {
 }
 
 void MotionStages::settle_signs_and_levels() {
-  const bool constant = disc_.known && (motion_.disc_velocity.empty() || undoes_ripple_);
+  const bool constant = disc_.known && (motion_.disc_velocity.empty() || follows_disc_);
   motion_.constant_disc_velocity = constant ? disc_.constant : 0;
   motion_.sticks = search_.sticks;
   motion_.velocity_noise = std::max(search_.noise, samples_->velocity_step() / std::sqrt(12.0));
@@ -247,10 +293,10 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
   using Stages = kinematics::MotionStages;
   for (const auto stage :
        {&Stages::look_at_recording, &Stages::correct_declared, &Stages::find_disc, &Stages::find_plateau,
-        &Stages::find_direction, &Stages::undo_high_pass, &Stages::undo_distortions, &Stages::find_speed_steps,
-        &Stages::take_speed_from_plateau, &Stages::undo_ripple, &Stages::check_clipping, &Stages::add_sensor_mass,
-        &Stages::make_relative_motion, &Stages::settle_signs_and_levels, &Stages::check_health,
-        &Stages::compare_plateau}) {
+        &Stages::find_direction, &Stages::read_at_rest, &Stages::undo_high_pass, &Stages::undo_distortions,
+        &Stages::find_speed_steps, &Stages::take_speed_from_plateau, &Stages::follow_disc, &Stages::check_clipping,
+        &Stages::add_sensor_mass, &Stages::make_relative_motion, &Stages::settle_signs_and_levels,
+        &Stages::check_health, &Stages::compare_plateau}) {
     stop_point();
     (stages.*stage)();
   }

@@ -44,7 +44,7 @@ void MotionStages::undo_distortions() {
 void MotionStages::undo_zero_drift() {
   const bool asked = options_.undo_distortions && motion_.high_pass == 0 && !samples_->any();
   if (!asked || !is_block() || !search_.sticks || !speed_is_constant()) return;
-  positions_ = positions_in_plateaus(trace_.time, trace_.velocity, search_, threads_);
+  if (positions_.time.empty()) positions_ = positions_in_plateaus(trace_.time, trace_.velocity, search_, threads_);
   zero_drift_ = find_zero_drift(trace_, search_, positions_, samples_->velocity_step());
   if (zero_drift_.value == 0) return;
   const double middle = 0.5 * (trace_.time.front() + trace_.time.back());

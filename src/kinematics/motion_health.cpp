@@ -49,11 +49,11 @@ std::optional<LevelRange> MotionStages::plateau_as_recorded() const {
 void MotionStages::check_health() {
   motion_.health = {std::move(clipping_), std::move(drop_outs_)};
   const std::function<HealthItem()> checks[] = {
-      [&] { return kinematics::check_sagging(sag_, declared_high_pass_, motion_.high_pass > 0, search_.sticks); },
+      [&] { return kinematics::check_sagging(rest_, declared_high_pass_, motion_.high_pass > 0, search_.sticks); },
       [&] { return check_band(); },
       [&] { return check_delay(); },
       [&] { return kinematics::check_revolutions(motion_); },
-      [&] { return kinematics::check_speed_ripple(motion_, ripple_); },
+      [&] { return kinematics::check_speed_ripple(motion_, disc_at_rest_); },
       [&] { return kinematics::check_run_up(motion_, options_.trim, run_up_); },
       [&] { return check_level(); },
       [&] { return samples_->check_resolution(motion_.friction_kind, search_.noise); },

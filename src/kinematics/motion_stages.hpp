@@ -12,7 +12,7 @@
 #include "plateau.hpp"
 #include "plateau_search.hpp"
 #include "recorded_samples.hpp"
-#include "ripple.hpp"
+#include "rest_model.hpp"
 #include "speed_steps.hpp"
 #include "tribofit/kinematics/motion.hpp"
 
@@ -28,11 +28,12 @@ class MotionStages {
   void find_disc();
   void find_plateau();
   void find_direction();
+  void read_at_rest();
   void undo_high_pass();
   void undo_distortions();
   void find_speed_steps();
   void take_speed_from_plateau();
-  void undo_ripple();
+  void follow_disc();
   void check_clipping();
   void add_sensor_mass();
   void make_relative_motion();
@@ -55,7 +56,7 @@ class MotionStages {
   void undo_clock_drift();
   void compare_channels();
   void find_friction_filter();
-  void undo_ripple_in_high_pass();
+  void take_disc_off_high_pass();
   std::size_t run_up() const;
   Plateaus plateaus_in_motion() const { return plateaus_within(search_, motion_.trimmed, motion_.size()); }
   HealthItem check_band() const;
@@ -77,7 +78,7 @@ class MotionStages {
   PlateauSearch search_;
   bool is_reversed_ = false;
   std::optional<double> declared_high_pass_;
-  HighPassEstimate sag_;
+  RestModel rest_;      ///< of the velocity as recorded
   double plateau_ = 0;  ///< of v_b (v_r where that was measured), towards which the record tends [m/s]
   std::optional<RecordedPlateau> recorded_;
   BlockPositions positions_;  ///< of the block, until the velocity is changed
@@ -87,8 +88,8 @@ class MotionStages {
   double friction_fall_ = 0;  ///< see FrictionLowPass::fall
   ClockDriftEstimate clocks_;
   std::vector<SpeedLevel> speed_levels_;  ///< of a disc whose speed steps, unsaid
-  RippleEstimate ripple_;
-  bool undoes_ripple_ = false;
+  RestModel disc_at_rest_;                ///< of a velocity that is put right, with the speed of the disc
+  bool follows_disc_ = false;
   std::size_t run_up_ = 0;
 };
 

@@ -64,6 +64,10 @@ BlockPositions positions_in_plateaus(std::span<const double> time, std::span<con
   return out;
 }
 
+Estimate mean_velocity(const BlockPositions& positions) {
+  return positions.time.size() < kFewestForMedian ? Estimate{} : slope_of(positions.time, positions.position);
+}
+
 Estimate find_zero_drift(const Trace& trace, const PlateauSearch& search, const BlockPositions& positions,
                          double step) {
   if (search.plateaus.runs.size() < 2 * kFewestPeriods) return {};

@@ -32,6 +32,9 @@ struct BlockPositions {
 BlockPositions positions_in_plateaus(std::span<const double> time, std::span<const double> velocity,
                                      const PlateauSearch& search, int threads = 1);
 
+/// Of the block over the record [m/s].
+Estimate mean_velocity(const BlockPositions& positions);
+
 /// By how much the zero of v_b moves in a second [m/s^2], evenly: plateaus and the mean velocity of the block move
 /// alike. A disc that changes its speed moves plateaus alone, slips that are read wrongly the mean alone. Zero where
 /// they do not agree, or within their errors. Of a disc at one speed. step: of the converter [m/s]; 0: fine.

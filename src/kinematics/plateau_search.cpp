@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -236,17 +237,6 @@ std::optional<RecordedPlateau> recorded_plateau(const PlateauSearch& search, con
   return has_plateau ? RecordedPlateau{alone.level, both_in(alone).disc} : following;
 }
 
-std::vector<double> disc_slopes(const PlateauSearch& s) {
-  std::vector<double> slopes;
-  if (s.disc.mean.empty()) return slopes;
-  for (const StickPlateau& run : s.plateaus.runs) {
-    const auto part =
-        std::span<const double>(s.disc.mean).subspan(run.inner_begin(), run.inner_end() - run.inner_begin());
-    slopes.push_back(fit_line(part).slope / s.blocks.step);
-  }
-  return slopes;
-}
-
 double final_level(const Plateaus& plateaus) {
   std::vector<double> levels;
   for (std::size_t r = plateaus.runs.size() / 2; r < plateaus.runs.size(); ++r)
@@ -261,6 +251,41 @@ Plateaus plateaus_within(const PlateauSearch& search, std::size_t trimmed, std::
   std::erase_if(plateaus.runs, [&](const StickPlateau& run) { return run.begin < cut || run.end - cut > kept; });
   for (StickPlateau& run : plateaus.runs) run.begin -= cut, run.end -= cut;
   return plateaus;
+}
+
+double steady_speed(const Trace& trace) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  if (!trace.disc_speed.empty() || !trace.disc_angle.empty()) return none;
+  double speed = none;
+  for (const Step& step : trace.steps) {
+    const double here = first_known(step.conditions.speed, trace.conditions.speed).value;
+    if (speed == speed && here != speed) return none;
+    speed = here;
+  }
+  return speed;
+}
+
+void flatten(PlateauSearch& search, std::span<const double> factor) {
+  const BlockMeans means = block_means(factor, search.blocks.length, search.blocks.step);
+  for (std::size_t b = 0; b < means.mean.size(); ++b) search.blocks.mean[b] /= means.mean[b];
+  const double near = 0.5 * search.plateaus.level, far = 1.5 * search.plateaus.level;
+  Plateaus plateaus = find_plateaus(search.blocks.mean, LevelRange{std::min(near, far), std::max(near, far)});
+  if (!plateaus.empty()) search.plateaus = std::move(plateaus);
+}
+
+void impose(std::vector<double> factor, double omega, Trace& trace, Disc& disc) {
+  if (std::abs(omega) > 0) {
+    trace.disc_speed = factor;
+    for (double& v : trace.disc_speed) v *= omega;
+    trace.disc_angle.assign(trace.size(), 0);
+    for (std::size_t i = 1; i < trace.size(); ++i) {
+      const double mean = 0.5 * (trace.disc_speed[i] + trace.disc_speed[i - 1]);
+      trace.disc_angle[i] = trace.disc_angle[i - 1] + mean * (trace.time[i] - trace.time[i - 1]);
+    }
+  }
+  disc.varying = std::move(factor);
+  for (double& v : disc.varying) v *= disc.constant;
+  disc.largest = largest_of(disc.varying);
 }
 
 std::size_t run_up_blocks(const PlateauSearch& s) {

@@ -54,14 +54,20 @@ struct RecordedPlateau {
 /// did.
 std::optional<RecordedPlateau> recorded_plateau(const PlateauSearch& search, const Disc& disc, VelocityKind kind);
 
-/// d(omega r)/dt of every plateau [m/s^2]; empty where omega r is constant.
-std::vector<double> disc_slopes(const PlateauSearch& s);
-
 /// The level towards which the plateaus tend: median over the second half of the record [m/s].
 double final_level(const Plateaus& plateaus);
 
 /// The plateaus that samples [trimmed, trimmed + size) still hold, in blocks from there.
 Plateaus plateaus_within(const PlateauSearch& search, std::size_t trimmed, std::size_t size);
+
+/// The one stated speed of the whole record [rad/s], NaN where there are several or it was recorded.
+double steady_speed(const Trace& trace);
+
+/// Makes the blocks and plateaus those that a disc at one speed would have shown. factor: of its speed, every sample.
+void flatten(PlateauSearch& search, std::span<const double> factor);
+
+/// Gives omega r, and speed and angle of the disc where they are known, a factor.
+void impose(std::vector<double> factor, double omega, Trace& trace, Disc& disc);
 
 /// Blocks before the plateau comes within 2 % of its final value and stays there.
 std::size_t run_up_blocks(const PlateauSearch& s);

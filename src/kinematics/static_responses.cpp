@@ -183,6 +183,41 @@ UndoneResponse better_of(const Straightened& a, const Straightened& b) {
   return best;
 }
 
+/// Friction in the middles of the sticks, over the displacements of the block and of the disc; the force, where
+/// friction was divided by a load that varies, over that of the block.
+struct StickRamps {
+  std::vector<Ramp> over_way, over_disc, of_force;
+  double largest = 0;  ///< friction
+};
+
+StickRamps ramps_of(const Trace& trace, const PlateauSearch& search) {
+  const std::size_t length = search.blocks.length;
+  const BlockMeans friction = block_means(trace.friction, length, search.blocks.step);
+  std::vector<double> force = friction.mean;
+  if (!trace.load.empty()) {
+    const BlockMeans load = block_means(trace.load, length, search.blocks.step);
+    const double usual = mean_of(load.mean);
+    for (std::size_t b = 0; b < force.size(); ++b) force[b] *= load.mean[b] / usual;
+  }
+  const std::vector<double> position = running_sum(search.blocks.mean);
+  const std::vector<double> turned = search.disc.mean.empty() ? std::vector<double>() : running_sum(search.disc.mean);
+  StickRamps ramps{{}, {}, {}, largest_of(friction.mean)};
+  for (const StickPlateau& run : search.plateaus.runs) {
+    const StickPlateau rest = at_rest(search, run);
+    const std::size_t first = rest.inner_begin(), size = rest.inner_end() - first;
+    if (size < kFewestBlocks) continue;
+    const auto n = static_cast<Eigen::Index>(size);
+    const auto part = [&](const std::vector<double>& values) {
+      return Eigen::ArrayXd(Eigen::Map<const Eigen::ArrayXd>(values.data() + first, n));
+    };
+    ramps.over_way.push_back({part(friction.mean), part(position)});
+    ramps.over_disc.push_back(
+        {part(friction.mean), turned.empty() ? Eigen::ArrayXd(Eigen::ArrayXd::LinSpaced(n, 0, 1)) : part(turned)});
+    ramps.of_force.push_back({part(force), part(position)});
+  }
+  return ramps;
+}
+
 }  // namespace
 
 UndoneResponse find_velocity_response(const Trace& trace, const PlateauSearch& search, const Estimate& mean) {
@@ -204,38 +239,20 @@ UndoneResponse find_velocity_response(const Trace& trace, const PlateauSearch& s
   return best;
 }
 
+StickBends bends_in_stick(const Trace& trace, const PlateauSearch& search) {
+  const StickRamps ramps = ramps_of(trace, search);
+  if (ramps.over_way.size() < kFewestForMedian) return {};
+  const StaticResponse straight{Form::linear, 0, ramps.largest};
+  const Curvature way = curvature_of(ramps.over_way, straight), disc = curvature_of(ramps.over_disc, straight);
+  return {disc.part, way.part, std::max(disc.std_error, way.std_error)};
+}
+
 UndoneResponse find_friction_response(const Trace& trace, const PlateauSearch& search) {
-  const std::vector<StickPlateau>& runs = search.plateaus.runs;
-  if (runs.size() < 2 * kFewestPeriods) return {};
-  const std::size_t length = search.blocks.length;
-  const BlockMeans friction = block_means(trace.friction, length, search.blocks.step);
-  std::vector<double> force = friction.mean;  // where friction was divided by a load that varies
-  if (!trace.load.empty()) {
-    const BlockMeans load = block_means(trace.load, length, search.blocks.step);
-    const double usual = mean_of(load.mean);
-    for (std::size_t b = 0; b < force.size(); ++b) force[b] *= load.mean[b] / usual;
-  }
-  const std::vector<double> position = running_sum(search.blocks.mean);
-  const std::vector<double> turned = search.disc.mean.empty() ? std::vector<double>() : running_sum(search.disc.mean);
-  std::array<std::vector<Ramp>, 3> ramps;  // over displacements of the block and of the disc; of the force
-  const double largest = largest_of(friction.mean);
-  for (const StickPlateau& run : runs) {
-    const StickPlateau rest = at_rest(search, run);
-    const std::size_t first = rest.inner_begin(), size = rest.inner_end() - first;
-    if (size < kFewestBlocks) continue;
-    const auto part = [&](const std::vector<double>& values) {
-      return Eigen::Map<const Eigen::ArrayXd>(values.data() + first, static_cast<Eigen::Index>(size));
-    };
-    const auto n = static_cast<Eigen::Index>(size);
-    ramps[0].push_back({part(friction.mean), part(position)});
-    ramps[1].push_back({part(friction.mean), turned.empty() ? Eigen::ArrayXd(Eigen::ArrayXd::LinSpaced(n, 0, 1))
-                                                            : Eigen::ArrayXd(part(turned))});
-    ramps[2].push_back({part(force), part(position)});
-  }
-  if (ramps[0].size() < 2 * kFewestPeriods) return {};
+  const StickRamps ramps = ramps_of(trace, search);
+  if (ramps.over_way.size() < 2 * kFewestPeriods) return {};
   const auto straighten = [&](Form form) -> Straightened {
-    StaticResponse response{form, 0, largest};
-    const Curvature first = curvature_of(ramps[0], response);
+    StaticResponse response{form, 0, ramps.largest};
+    const Curvature first = curvature_of(ramps.over_way, response);
     const double part = first.part;
     const auto agrees = [&](double other, double error) {
       return std::abs(part - other) < kHalvesAgree * part + kZeroErrors * std::hypot(first.std_error, error);
@@ -243,12 +260,12 @@ UndoneResponse find_friction_response(const Trace& trace, const PlateauSearch& s
     for (const double half : first.halves) {
       if (!agrees(half, std::numbers::sqrt2 * first.std_error)) return {};
     }
-    for (std::size_t k = 1; k < ramps.size(); ++k) {
-      const Curvature other = curvature_of(ramps[k], response);
+    for (const std::vector<Ramp>& others : {ramps.over_disc, ramps.of_force}) {
+      const Curvature other = curvature_of(others, response);
       if (!agrees(other.part, other.std_error)) return {};
     }
     if (part < std::max(kLeastCurvature, kSignificance * first.std_error)) return {};
-    const Curvature straight = straightened(ramps[0], response);
+    const Curvature straight = straightened(ramps.over_way, response);
     if (straight.std_error == 0 || response.part < kLeastCurvature || response.part > kMostCompressed) return {};
     return {{response, std::hypot(straight.std_error, kOtherCharacteristic * response.part)}, straight.left};
   };

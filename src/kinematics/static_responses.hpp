@@ -18,4 +18,12 @@ UndoneResponse find_velocity_response(const Trace& trace, const PlateauSearch& s
 /// towards break-away, which a spring that hardens does too. Cost: two passes.
 UndoneResponse find_friction_response(const Trace& trace, const PlateauSearch& search);
 
+/// By how much friction bends in stick over the displacement of the disc and over that of the block as read: the part
+/// that a linear StaticResponse would have to make it straight. In stick it is the force of a spring, straight over the
+/// displacement that the block truly has.
+struct StickBends {
+  double over_disc = 0, over_way = 0, std_error = 0;  ///< std_error: of the larger one; 0: too few sticks
+};
+StickBends bends_in_stick(const Trace& trace, const PlateauSearch& search);
+
 }  // namespace tribofit::kinematics

@@ -108,6 +108,11 @@ struct Motion {
   StickRule stick;                    ///< as the user said
   double clock_offset_std_error = 0;  ///< as in Trace [s]; NaN: not known
   DiscRipple speed_ripple;            ///< found on the plateaus and undone
+  /// By how much omega r falls with friction, over what it is without [1 over the unit of friction], and the time
+  /// constant within which it does [s]: found on the plateaus, omega r follows it. 0: none.
+  Estimate drive_compliance;
+  double drive_time = 0;
+  Estimate velocity_crosstalk;  ///< reading of v_b for a unit of friction [m/s], taken off; 0: none
 
   /// Plateau of v_b over the stated omega r, creep of the contact taken off, and its standard error from stick to
   /// stick. Radius (or speed) and gain of the vibrometer show in it alike. NaN where no radius and speed were stated,
@@ -161,8 +166,8 @@ struct MotionOptions {
 /// from omega r, or from no net displacement of the block, and a straight drift from the levels of the plateaus.
 ///
 /// Where the speed of the disc is stated and not recorded, and two revolutions are, the levels of the plateaus over the
-/// angle omega t show a ripple of the speed (kinematics/ripple.hpp says when it counts); omega r, the disc's speed and
-/// angle then follow it. The plateau against the stated omega r is reported as plateau_ratio: a wrong radius and a
+/// angle omega t show a ripple of the speed (kinematics/rest_model.hpp says when it counts); omega r, the disc's speed
+/// and angle then follow it. The plateau against the stated omega r is reported as plateau_ratio: a wrong radius and a
 /// wrong gain of the vibrometer look alike in it, so that it is only corrected when asked (options.plateau). Order:
 /// sign, high-pass, ripple, run-up, plateau. Behind a high-pass the level of the plateau is not in the record; the
 /// ratio then follows from no net displacement of the block.
