@@ -19,26 +19,19 @@ using namespace tribofit;
 
 namespace {
 
-/// "15mm", or one radius per step: "6mm,9mm" or "6,9mm", where a bare number has the unit of the last.
+/// "15mm", or one radius per step: "6mm,9mm" or "6,9mm", where the last has the unit of all.
 std::vector<double> radii_from(const std::string& text) {
-  constexpr double kLargest = 10;  // m; more is a forgotten unit
   const std::vector<std::string> parts = split(text, ',');
   std::vector<double> radii;
   for (const std::string& part : parts) {
-    radii.push_back(positive_value(part, Quantity::length, "--radius", unit_of(parts.back())));
-    if (radii.back() > kLargest) {
-      throw InputError("--radius: '" + part + "' would be more than 10 m",
-                       "give the unit, as in 15mm (a bare number is in m)");
-    }
+    const std::string radius = is_bare_number(part) ? part + unit_of(parts.back()) : part;
+    radii.push_back(positive_value(radius, Quantity::length, "--radius"));
   }
   return radii;
 }
 
 /// "4rpm", or the linear speed under the block at the one friction radius that is stated ("1.1mm/s"): omega = v/r.
 double speed_from(const std::string& text, const Condition& radius) {
-  if (is_bare_number(text))
-    throw InputError("--speed: '" + text + "' has no unit",
-                     "write " + text + "rpm, " + text + "rad/s or " + text + "mm/s");
   if (!is_linear_speed(text)) return positive_value(text, Quantity::angular_velocity, "--speed");
   const double velocity = positive_value(text, Quantity::velocity, "--speed");
   if (radius.known()) return velocity / radius.value;
@@ -246,7 +239,7 @@ class GivenReader {
 
 double parameter_value(const std::string& text, const Parameter& parameter, const std::string& option) {
   const Unit unit = find_unit(parameter.unit).value_or(Unit{});
-  return stated_value(text, unit.quantity, option, parameter.unit == "1" ? "" : parameter.unit);
+  return stated_value(text, unit.quantity, option);
 }
 
 Effect effect_named(const std::string& name) {

@@ -62,11 +62,10 @@ class Option {
 struct TypedNumber {
   tribofit::Quantity quantity = tribofit::Quantity::dimensionless;
   const char* otherwise = "";  ///< what holds unless it is typed, which the help shows; empty: nothing
-  const char* bare_unit = "";  ///< of a number without one; empty: SI
   bool is_positive = false;    ///< it must be greater than zero
 };
-constexpr TypedNumber positive(tribofit::Quantity quantity, const char* otherwise = "", const char* bare_unit = "") {
-  return {quantity, otherwise, bare_unit, true};
+constexpr TypedNumber positive(tribofit::Quantity quantity, const char* otherwise = "") {
+  return {quantity, otherwise, true};
 }
 
 /// A command line of `identify`, or of one of its verbs: options, help, and what it runs.

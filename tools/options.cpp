@@ -61,8 +61,8 @@ Selection::Cycles cycles_from(const std::string& text) {
 Selection::Stretch stretch_from(const std::string& text) {
   const auto stretch = as_usage([&] {
     const auto [from, to] = range_ends(text, "--exclude", "2.5s..3.1s");
-    return Selection::Stretch{stated_value(from, Quantity::time, "--exclude", "s"),
-                              stated_value(to, Quantity::time, "--exclude", "s")};
+    return Selection::Stretch{stated_value(from, Quantity::time, "--exclude"),
+                              stated_value(to, Quantity::time, "--exclude")};
   });
   if (stretch.from < stretch.to) return stretch;
   throw UsageError("--exclude: '" + text + "' does not run from an earlier to a later time");
@@ -156,11 +156,10 @@ void add_driven_options(const Command& app, Settings& s) {
         "--detrend", [&](const std::string& name) { driven.detrend = *find_detrend(name); },
         "Line that is taken off each step, over displacement or time, auto (default: the better one) or none")
       .one_of(detrend_names());
-  in.add_read(
-      "--reference-speed", [&](const std::string& text) { driven.reference_speed = reference_speed_from(text); },
-      "v0, 1um/s (default: the speed before the first step)");
-  in.add_number("--from", {Quantity::time, "", "s"}, driven.from, "Nothing before this time is used, 120s");
-  in.add_number("--to", {Quantity::time, "", "s"}, driven.to, "Nothing after this time is used, 900s");
+  in.add_number("--reference-speed", positive(Quantity::velocity), driven.reference_speed,
+                "v0, 1um/s (default: the speed before the first step)");
+  in.add_number("--from", {Quantity::time}, driven.from, "Nothing before this time is used, 120s");
+  in.add_number("--to", {Quantity::time}, driven.to, "Nothing after this time is used, 900s");
 }
 
 void add_model_options(const Command& app, Settings& s) {

@@ -74,15 +74,13 @@ void refuse_clashes(const std::vector<tribofit::Effect>& effects, const std::vec
 /// The keys of all laws, as in "a, b or c".
 std::string list_of_laws();
 
-/// A value of a parameter of a law or an effect; a bare number is in the unit in which it is shown.
+/// A value of a parameter of a law or an effect, in SI.
 double parameter_value(const std::string& text, const tribofit::Parameter& parameter, const std::string& option);
 
 /// Whether --speed states those of a load point by time.
 bool names_load_point_speeds(const Settings& settings);
 /// "0s:2um/s,60s:10um/s": speeds from times on. `option`: for messages.
 std::vector<tribofit::LoadPointPhase> phases_from(const std::string& text, const std::string& option);
-/// --reference-speed, v0.
-double reference_speed_from(const std::string& text);
 
 /// A parameter of friction by rate and state, of its spring, or its base friction mu_0.
 struct StateParameter {
