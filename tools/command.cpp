@@ -268,6 +268,10 @@ std::vector<Command::Typed> Command::typed() const {
   return out;
 }
 
+void Command::keep_typed(std::vector<Typed>& out) const {
+  readers_->push_back([app = app_, status = status_, &out] { out = Command(*app, *status).typed(); });
+}
+
 std::vector<std::string> Command::verbs() const {
   std::vector<std::string> out = {""};
   for (CLI::App* verb : verbs_of(*app_)) {

@@ -39,7 +39,12 @@ struct UsageError : std::runtime_error {
 namespace section {
 inline constexpr const char *kConditions = "Conditions", *kReading = "Reading", *kOutput = "Output", *kBatch = "Batch",
                             *kTogether = "Runs together", *kMeans = "What can be done", *kServer = "Server",
-                            *kStudy = "Study", *kFit = "Law and fit";
+                            *kStudy = "Study", *kFit = "Law and fit", *kSpring = "Mass on a spring",
+                            *kSteps = "Velocity steps and holds",
+                            *kRig = "Rig (default: the published test of the nearest radius, 4 rpm, 50 N)",
+                            *kFriction = "Friction (default: the published values at the nearest radius)",
+                            *kDrive = "Motion of the disc, load and temperature", *kScatter = "Scatter of break-away",
+                            *kSensors = "Sensors";
 }
 
 /// One option of a command. It is filled in when the command line is parsed.
@@ -148,6 +153,8 @@ class Command {
     std::string section;
   };
   std::vector<Typed> typed() const;
+  /// Keeps that when all are read.
+  void keep_typed(std::vector<Typed>& out) const;
 
   /// Of this command the empty text, then each verb and the verbs of each: "study speed".
   std::vector<std::string> verbs() const;

@@ -140,8 +140,6 @@ Machine with_typed(Machine machine, const MachineRequest& request) {
 
 namespace {
 
-constexpr const char* kRigGroup = "Rig (default: the published test of the nearest radius, 4 rpm, 50 N)";
-
 /// An option for every parameter that a law of the list has.
 void add_law_parameters(const Command& group, MachineRequest& r) {
   std::vector<Parameter> parameters;
@@ -165,7 +163,7 @@ void add_law_parameters(const Command& group, MachineRequest& r) {
 }  // namespace
 
 void add_machine_options(const Command& verb, MachineRequest& r) {
-  const Command rig = verb.in(kRigGroup);
+  const Command rig = verb.in(section::kRig);
   rig.add_number("--radius", positive(Quantity::length, "15mm"), r.radius, "Friction radius");
   rig.add_option("--speed", r.speed, "Speed of the disc, e.g. 4rpm, or under the block, e.g. 6mm/s");
   rig.add_number("--load", {Quantity::force}, r.load, "Normal force, e.g. 50N");
@@ -173,12 +171,12 @@ void add_machine_options(const Command& verb, MachineRequest& r) {
 }
 
 void add_machine_numbers(const Command& verb, MachineRequest& r) {
-  const Command rig = verb.in(kRigGroup);
+  const Command rig = verb.in(section::kRig);
   rig.add_number("--mass", {Quantity::mass}, r.mass, "Moving mass, e.g. 0.85kg");
   rig.add_number("--stiffness", {Quantity::stiffness}, r.stiffness, "Stiffness of the spring, e.g. 16.2N/mm");
   rig.add_number("--damping", {Quantity::damping}, r.damping, "Damping of the block on its spring, e.g. 0.0047Ns/mm");
   rig.add_number("--damping-ratio", {}, r.damping_ratio, "Damping as c/(2 sqrt(k m)), e.g. 0.02");
-  const Command law = verb.in("Friction (default: the published values at the nearest radius)");
+  const Command law = verb.in(section::kFriction);
   const auto read_law = [&r](const std::string& name) {
     r.law = as_usage([&] { return make_law(name); });
     r.law_is_typed = true;

@@ -96,6 +96,7 @@ void add_input_options(const Command& app, Settings& s) {
     in.add_each(
         name, [name, &out](const std::string& text) { add_pairs(text, name, out); }, help);
   };
+  app.keep_typed(s.typed);
   app.add_names("TRACE", s.traces, "Traces (text, MATLAB, UFF, TDMS), or folders of them");
   const Command conditions = app.in(section::kConditions);
   conditions.add_option("--radius", s.radius, "Friction radius, 15mm; one per step as 6mm,9mm,12mm");
@@ -131,7 +132,7 @@ void add_input_options(const Command& app, Settings& s) {
 
 void add_spring_options(const Command& app, Settings& s) {
   SpringDrive& spring = s.identify.read.spring;
-  const Command in = app.in("Mass on a spring");
+  const Command in = app.in(section::kSpring);
   add_condition(in, "--stiffness", Quantity::stiffness, spring.stiffness,
                 "Of the spring, where its pull, or the motion of the mass on it, is all that was recorded, 168N/m");
   add_condition(in, "--mass", Quantity::mass, spring.mass,
@@ -145,7 +146,7 @@ void add_spring_options(const Command& app, Settings& s) {
 
 void add_driven_options(const Command& app, Settings& s) {
   RateStateOptions& driven = s.identify.rate_state;
-  const Command in = app.in("Velocity steps and holds");
+  const Command in = app.in(section::kSteps);
   in.add_each("--evolution",
               in_place_of(driven.evolutions, [](const std::string& name) { return *find_state_evolution(name); }),
               "Law of the state, ageing or slip (repeatable; default both)")

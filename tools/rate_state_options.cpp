@@ -3,6 +3,7 @@
 
 #include "settings.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "tribofit/output/text.hpp"
 #include "typed_values.hpp"
 
 using namespace tribofit;
@@ -19,6 +20,12 @@ constexpr std::array<StateParameter, 7> kStateParameters = {{{"a", Quantity::dim
 
 }  // namespace
 
+std::vector<std::string> state_parameter_names() {
+  std::vector<std::string> names;
+  for (const StateParameter& parameter : kStateParameters) names.emplace_back(parameter.name);
+  return names;
+}
+
 const StateParameter* find_state_parameter(std::string_view name) {
   const auto at = std::ranges::find(kStateParameters, name, &StateParameter::name);
   return at == kStateParameters.end() ? nullptr : at;
@@ -34,7 +41,7 @@ double StateParameter::value(std::string text, const std::string& option, bool i
 }
 
 std::map<std::string, double> rate_state_values(const std::string& text, const std::string& option) {
-  const std::string example = "NAME=VALUE of a, b, D_c, k, mu_0, b_2 or D_c2";
+  const std::string example = "NAME=VALUE of " + enumerated(state_parameter_names(), "or");
   std::map<std::string, double> values;
   for (const auto& [name, value] : named_texts({text}, option, example)) {
     const StateParameter* parameter = find_state_parameter(name);

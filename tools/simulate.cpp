@@ -254,7 +254,7 @@ void add_options(const Command& verb, SimulateRequest& r) {
   verb.add_flag("--quiet", r.quiet, "Print nothing");
   add_machine_options(verb, r.machine);
   add_steps_options(verb, r);
-  const Command rig = verb.in("Motion of the disc, load and temperature");
+  const Command rig = verb.in(section::kDrive);
   rig.add_number("--run-up", positive(Quantity::time), r.run_up,
                  "Start from standstill and reach the speed in this time; else the start is settled");
   rig.add_number("--reversing", {Quantity::frequency}, r.reversing,
@@ -267,12 +267,12 @@ void add_options(const Command& verb, SimulateRequest& r) {
   rig.add_option("--temperature", r.temperature,
                  "Temperature channel: a ramp 20degC..60degC, or a swing between the two 20degC..60degC,15s");
   constexpr Quantity kPlain = Quantity::dimensionless;
-  const Command law = verb.in("Scatter of break-away");
+  const Command law = verb.in(section::kScatter);
   law.add_number("--scatter", {kPlain, "0"}, options.scatter.deviation,
                  "Standard deviation of mu_s from cycle to cycle");
   law.add_number("--wander", {kPlain, "0"}, options.scatter.wander,
                  "Correlation of the scatter between neighbouring cycles");
-  const Command in = verb.in("Sensors");
+  const Command in = verb.in(section::kSensors);
   in.add_number("--noise-mu", {kPlain, "0"}, s.friction_noise, "Standard deviation of the noise on mu");
   in.add_number("--noise-v", {Quantity::velocity, "0mm/s"}, s.velocity_noise, "Standard deviation of the noise on v_b");
   in.add_number("--noise-colour", {kPlain, "0"}, s.noise_colour, "AR(1) coefficient of both noises; 0 is white");
@@ -318,5 +318,8 @@ void add_simulate(const Command& app) {
                                     "trace.csv");
   auto request = std::make_shared<tribofit::SimulateRequest>();
   tribofit::add_options(verb, *request);
-  verb.on_run([request] { tribofit::run_simulate(*request); });
+  verb.on_run([request, verb] {
+    refuse_unread(verb.typed(), tribofit::find_record_kind(request->kind).value_or(tribofit::RecordKind::stick_slip));
+    tribofit::run_simulate(*request);
+  });
 }

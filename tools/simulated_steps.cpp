@@ -98,7 +98,7 @@ std::string truth_of(const SimulateRequest& r, const RateStateMachine& machine, 
 }  // namespace
 
 void add_steps_options(const Command& verb, SimulateRequest& r) {
-  const Command in = verb.in("Velocity steps and holds");
+  const Command in = verb.in(section::kSteps);
   in.add_option("--kind", r.kind,
                 "velocity-steps or slide-hold-slide: a load point at the --speed-steps, 0s:2um/s,60s:10um/s")
       .one_of({"velocity-steps", "slide-hold-slide"});
