@@ -64,6 +64,10 @@ TEST(HostileInput, NamesAreShownAndNotObeyed) {
               AllOf(Not(HasSubstr("\x1b")), HasSubstr("a\\x1b[31m\\nb.csv"), HasSubstr("$'a\\x1b[31m\\nb.csv'")));
   outcome = shop.shell("identify --radius 15mm \"$(printf 'missing\\033[31m\\nb.csv')\"");
   EXPECT_THAT(outcome.err, AllOf(Not(HasSubstr("\x1b")), HasSubstr("missing\\x1b[31m\\nb.csv: cannot be opened")));
+  shop.write("a\xe2\x80\xaevsc.b\xe2\x80\x8b.csv", good_trace());  // reads a.b.csv backwards, and as shorter than it is
+  outcome = shop.shell("identify --radius 15mm *vsc*.csv");
+  EXPECT_THAT(outcome.out, AllOf(Not(HasSubstr("\xe2\x80\xae")), Not(HasSubstr("\xe2\x80\x8b")),
+                                 HasSubstr("a\\u202evsc.b\\u200b.csv")));
   shop.write("c.csv", "time_s,mu,v\x1b[2J_mm_s" + good_trace().substr(good_trace().find('\n')));
   outcome = shop.identify("columns c.csv");
   EXPECT_THAT(outcome.out, Not(HasSubstr("\x1b")));
