@@ -250,14 +250,29 @@ std::optional<BlockStart> start_of(const Machine& machine, StartFrom start) {
   return BlockStart{steady_sliding(machine).displacement, kPush * machine.disc_velocity()};
 }
 
-Settled settle(const Machine& machine, const SettleOptions& options) {
-  // Refuses machines that cannot be; what cannot be integrated afterwards does not settle.
+namespace {
+
+/// Refuses machines that cannot be, or whose motion takes too long; what cannot be integrated afterwards does not
+/// settle.
+void require_machine(const Machine& machine) {
   steady_sliding(machine);
+  const double ratio = machine.rig.damping_ratio();
+  if (ratio <= kMostDampingRatio) return;
+  throw InputError(fmt::format("a damping ratio of {} is more than the {} of which motions are studied", general(ratio),
+                               general(kMostDampingRatio)),
+                   "give less damping, or a stiffer or heavier block");
+}
+
+}  // namespace
+
+Settled settle(const Machine& machine, const SettleOptions& options) {
+  require_machine(machine);
   if (options.sharpness > 0) smoothed_law(machine.model, machine.parameters, options.sharpness);
   return Settling(machine, options).run();
 }
 
 bool keeps_sticking(const Machine& machine, double sharpness) {
+  require_machine(machine);
   const double period = natural_period(machine), cycle = longest_cycle(machine);
   const bool bare = machine.model.effects().empty();
   const double most = std::max(kCyclesThatStick * cycle, (bare ? 2000 : 500) * period);
