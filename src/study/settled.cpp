@@ -252,15 +252,16 @@ std::optional<BlockStart> start_of(const Machine& machine, StartFrom start) {
 
 namespace {
 
-/// Refuses machines that cannot be, or whose motion takes too long; what cannot be integrated afterwards does not
-/// settle.
+/// Refuses machines that cannot be, or that creep to steady sliding for too long, by their damping or by friction that
+/// rises with speed; what cannot be integrated afterwards does not settle.
 void require_machine(const Machine& machine) {
-  steady_sliding(machine);
-  const double ratio = machine.rig.damping_ratio();
+  const SteadySliding sliding = steady_sliding(machine);
+  const bool creeps = sliding.is_stable() && sliding.eigenvalues.front().imag() == 0;
+  const double ratio = creeps ? machine.rig.natural_frequency() / (-2 * sliding.growth_rate()) : 0;
   if (ratio <= kMostDampingRatio) return;
-  throw InputError(fmt::format("a damping ratio of {} is more than the {} of which motions are studied", general(ratio),
-                               general(kMostDampingRatio)),
-                   "give less damping, or a stiffer or heavier block");
+  throw InputError(fmt::format("the block creeps as by a damping ratio of {}; motions are studied up to {}",
+                               general(ratio, 3), general(kMostDampingRatio)),
+                   "give less damping, or friction that rises less with speed");
 }
 
 }  // namespace
