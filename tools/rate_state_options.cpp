@@ -10,13 +10,13 @@ using namespace tribofit;
 
 namespace {
 
-constexpr std::array<StateParameter, 7> kStateParameters = {{{"a", Quantity::dimensionless, "a=0.01"},
-                                                             {"b", Quantity::dimensionless, "b=0.012"},
-                                                             {"D_c", Quantity::length, "D_c=10um"},
-                                                             {"b_2", Quantity::dimensionless, "b_2=0.002"},
-                                                             {"D_c2", Quantity::length, "D_c2=100um"},
-                                                             {"k", Quantity::inverse_length, "k=0.005/um"},
-                                                             {"mu_0", Quantity::dimensionless, "mu_0=0.6"}}};
+constexpr std::array<StateParameter, 7> kStateParameters = {{{"a", Quantity::dimensionless},
+                                                             {"b", Quantity::dimensionless},
+                                                             {"D_c", Quantity::length},
+                                                             {"b_2", Quantity::dimensionless},
+                                                             {"D_c2", Quantity::length},
+                                                             {"k", Quantity::inverse_length},
+                                                             {"mu_0", Quantity::dimensionless}}};
 
 }  // namespace
 

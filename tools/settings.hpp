@@ -89,7 +89,6 @@ std::vector<tribofit::LoadPointPhase> phases_from(const std::string& text, const
 struct StateParameter {
   std::string_view name;
   tribofit::Quantity quantity;
-  const char* example;
 
   /// In SI. in_newtons: of friction as a force.
   double value(std::string text, const std::string& option, bool in_newtons = false) const;

@@ -15,6 +15,7 @@ import os
 import pathlib
 import random
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -239,8 +240,8 @@ class Grammar:
 
 
 def offence_in(status, seconds, out, err, written, quiet=False):
-    """What is wrong with how a command ended; empty: nothing. status: None where it had to be ended."""
-    if status is None or seconds > LONGEST: return f"did not end within {LONGEST} s"
+    """What is wrong with how a command ended; empty: nothing. status: negative where a signal ended it."""
+    if seconds > LONGEST: return f"did not end within {LONGEST} s"
     if status not in STATUSES: return f"ended with status {status}"
     if status != 0 and len(err.strip()) < 10: return f"failed with status {status} and does not say why"
     if status == 0 and not out.strip() and not written and not quiet: return "says and writes nothing"
@@ -260,18 +261,15 @@ def run_line(identify, words, folder):
     with subprocess.Popen([identify, *words], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                           errors="replace", stdin=subprocess.DEVNULL) as process:
         begin = os.times().elapsed
-        status = None
         for wait, ending in ((2 if serves else LONGEST, signal.SIGINT), (5, signal.SIGKILL), (5, signal.SIGKILL)):
             try:
                 out, err = process.communicate(timeout=wait)
-                status = process.returncode
                 break
             except subprocess.TimeoutExpired:
                 process.send_signal(ending)
-                if not serves: status = None
-        seconds = os.times().elapsed - begin
-        if serves and status in (-signal.SIGINT, 128 + signal.SIGINT): status = 0
-        return status, seconds, out, err
+        ended = process.returncode
+        if serves and ended == -signal.SIGINT: ended = 0  # as the signal would have it
+        return ended, os.times().elapsed - begin, out, err
 
 
 def main(arguments):
@@ -282,7 +280,8 @@ def main(arguments):
     given = parser.parse_args(arguments)
     identify = os.path.abspath(given.identify)
     with tempfile.TemporaryDirectory() as directory:
-        folder = pathlib.Path(directory)
+        folder, work = pathlib.Path(directory) / "records", pathlib.Path(directory) / "work"
+        folder.mkdir()
 
         def run(words):
             done = subprocess.run([identify, *words.split()], cwd=folder, capture_output=True, text=True, check=False)
@@ -298,12 +297,12 @@ def main(arguments):
         offences, ends, slowest = [], dict.fromkeys(STATUSES, 0), (0, "")
         for _ in range(given.count):
             words = grammar.line()
-            out = folder / "out"
-            subprocess.run(["rm", "-rf", out], check=True)
-            out.mkdir()
-            status, seconds, shown, said = run_line(identify, words, folder)
-            files = [path for path in out.rglob("*") if path.is_file()]
+            shutil.copytree(folder, work)  # a line may write onto the records
+            (work / "out").mkdir()
+            status, seconds, shown, said = run_line(identify, words, work)
+            files = [path for path in (work / "out").rglob("*") if path.is_file()]
             written = {path.name: path.read_text(encoding="utf-8", errors="replace") for path in files}
+            shutil.rmtree(work)
             ends[status] = ends.get(status, 0) + 1
             line = "identify " + " ".join(f"'{word}'" if re.search(r"[^\w./:,=@+-]", word) else word for word in words)
             slowest = max(slowest, (seconds, line))
@@ -319,7 +318,7 @@ def self_test():
     fine = (0, 1, "result", "", {})
     assert not offence_in(*fine)
     assert not offence_in(2, 1, "", "identify: error: no trace given", {})
-    for bad in ((None, 25, "", "", {}), (0, 21, "x", "", {}), (-11, 1, "", "", {}), (134, 1, "", "terminate", {}),
+    for bad in ((-9, 25, "", "", {}), (0, 21, "x", "", {}), (-11, 1, "", "", {}), (134, 1, "", "terminate", {}),
                 (1, 1, "", "", {}), (0, 1, "", "", {}), (1, 1, "", "identify: error: basic_string::substr", {}),
                 (0, 1, "x", "", {"a.json": "{"})):
         assert offence_in(*bad), bad
