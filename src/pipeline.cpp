@@ -37,13 +37,15 @@ constexpr const char* kFilterInModel =
 /// What a trace is read for.
 enum class Purpose { anything, law, rig };
 
-/// Values of velocity steps alone are given for a record of them.
-void refuse_given_of_steps(const IdentifyOptions& options, const Motion& motion) {
-  if (options.rate_state.given.empty()) return;
-  throw InputError(fmt::format("{} is a parameter of velocity steps and holds; this record is of {}",
-                               options.rate_state.given.front().name,
-                               motion.kind ? fmt::format("the kind {}", to_string(*motion.kind)) : "another kind"),
-                   "leave it out of --start and --bounds, or state the kind of the record with --kind velocity-steps");
+/// Values are given of parameters that records of another kind have.
+void refuse_given_of_others(const IdentifyOptions& options, const Motion& motion, bool is_driven) {
+  const std::vector<GivenParameter>& given = is_driven ? options.fit.given : options.rate_state.given;
+  if (given.empty()) return;
+  const std::string_view driven = "velocity steps and holds", others = "laws of sliding speed";
+  throw InputError(
+      fmt::format("{} is a parameter of {}; this record is of {}", given.front().name, is_driven ? others : driven,
+                  motion.kind ? fmt::format("the kind {}", to_string(*motion.kind)) : "another kind"),
+      "leave it out of --start and --bounds, or state the kind of the record with --kind");
 }
 
 Identification facts_of(const std::string& path, const Trace& trace) {
@@ -64,12 +66,13 @@ Identification segment(Identification out, Motion motion, const IdentifyOptions&
   if (out.motion.is_points()) out.duration = out.rate = std::nan("");
   stop_point();
   const bool driven = is_driven_in_steps(out.motion.kind);
-  if (!driven) refuse_given_of_steps(options, out.motion);
+  refuse_given_of_others(options, out.motion, driven);
   const bool has_spectrum = !driven && !out.motion.is_points() && out.motion.kind != RecordKind::force_only;
   run_tasks(2, options.threads, [&](std::size_t k) {
     if (k == 0) out.segmentation = find_cycles(out.motion, options.threads);
     if (k == 1 && has_spectrum) out.spectral_peak = fundamental(out.motion.relative_velocity, out.motion.step);
   });
+  if (options.check_kind) options.check_kind(kind_of_record(out.motion, out.segmentation));
   stop_point();
   if (!driven) exclude(options.selection, out.motion, out.segmentation);
   if (out.motion.kind == RecordKind::force_only) out.force_statistics = force_statistics(out.motion);
@@ -111,31 +114,11 @@ IdentifyOptions of_the_motion(IdentifyOptions options) {
   return options;
 }
 
-/// Options of a fit of sliding laws that were given, and mean nothing for velocity steps and holds.
-std::vector<std::string> without_meaning_for_steps(const IdentifyOptions& options) {
-  const IdentifyOptions usual;
-  const bool laws = !std::equal(options.laws.begin(), options.laws.end(), usual.laws.begin(), usual.laws.end(),
-                                [](const Law& a, const Law& b) { return to_string(a) == to_string(b); });
-  std::vector<std::string> out;
-  if (laws) out.emplace_back("--law");
-  if (options.selection.cycles) out.emplace_back("--cycles");
-  if (options.fit.loss != usual.fit.loss) out.emplace_back("--loss");
-  if (options.fit.profile) out.emplace_back("--profile");
-  if (options.fit.starts != usual.fit.starts) out.emplace_back("--starts");
-  if (options.fit.folds != usual.fit.folds) out.emplace_back("--folds");
-  if (options.fit.protocol != usual.fit.protocol) out.emplace_back("--protocol");
-  return out;
-}
-
 /// Rate-and-state friction of a contact whose load point is driven in steps.
 void fit_driven(const IdentifyOptions& options, Identification& trace) {
   if (!options.effects.empty())
     trace.refuse("effects are of laws of sliding speed: velocity steps and holds are fitted by rate and state alone");
   if (!trace.analysed) return;
-  const std::vector<std::string> unused = without_meaning_for_steps(options);
-  if (!unused.empty())
-    trace.warnings.push_back(
-        fmt::format("velocity steps and holds are fitted by rate and state, without {}", fmt::join(unused, ", ")));
   if (options.rate_state.given_in_newtons && trace.motion.friction_kind != FrictionKind::force)
     throw InputError("a, b or k was given in newtons, and friction is a coefficient",
                      "give a and b without a unit, and k as in 0.005/um");

@@ -19,26 +19,19 @@ using namespace tribofit;
 
 namespace {
 
-/// "15mm", or one radius per step: "6mm,9mm" or "6,9mm", where a bare number has the unit of the last.
+/// "15mm", or one radius per step: "6mm,9mm" or "6,9mm", where the last has the unit of all.
 std::vector<double> radii_from(const std::string& text) {
-  constexpr double kLargest = 10;  // m; more is a forgotten unit
   const std::vector<std::string> parts = split(text, ',');
   std::vector<double> radii;
   for (const std::string& part : parts) {
-    radii.push_back(positive_value(part, Quantity::length, "--radius", unit_of(parts.back())));
-    if (radii.back() > kLargest) {
-      throw InputError("--radius: '" + part + "' would be more than 10 m",
-                       "give the unit, as in 15mm (a bare number is in m)");
-    }
+    const std::string radius = is_bare_number(part) ? part + unit_of(parts.back()) : part;
+    radii.push_back(positive_value(radius, Quantity::length, "--radius"));
   }
   return radii;
 }
 
 /// "4rpm", or the linear speed under the block at the one friction radius that is stated ("1.1mm/s"): omega = v/r.
 double speed_from(const std::string& text, const Condition& radius) {
-  if (is_bare_number(text))
-    throw InputError("--speed: '" + text + "' has no unit",
-                     "write " + text + "rpm, " + text + "rad/s or " + text + "mm/s");
   if (!is_linear_speed(text)) return positive_value(text, Quantity::angular_velocity, "--speed");
   const double velocity = positive_value(text, Quantity::velocity, "--speed");
   if (radius.known()) return velocity / radius.value;
@@ -49,23 +42,16 @@ double speed_from(const std::string& text, const Condition& radius) {
 std::optional<RecordKind> kind_from(const Settings& s) {
   const ReadOptions& read = s.identify.read;
   const bool has_stiffness = read.spring.stiffness.known();
-  const auto refuse_beside = [&](const char* option, RecordKind kind) {
-    if (!read.kind || read.kind == kind) return;
-    throw UsageError(
-        fmt::format("{} says --kind {}, and --kind {} another", option, to_string(kind), to_string(*read.kind)));
-  };
-  if (s.never_sticks) refuse_beside("--never-sticks", RecordKind::sliding);
+  if (read.kind) refuse_unread(s.typed, *read.kind);
   if (names_load_point_speeds(s)) {
     if (read.kind && !is_driven_in_steps(read.kind))
       throw UsageError("--speed by time is that of a load point: --kind velocity-steps or slide-hold-slide");
     return read.kind ? read.kind : RecordKind::velocity_steps;
   }
   const bool is_motion_only = read.spring.damping.known() || read.spring.counterface;
-  if (is_motion_only) refuse_beside("--damping or --rubs-on", RecordKind::motion_only);
   if (is_motion_only || read.kind == RecordKind::motion_only) return RecordKind::motion_only;
   // With a displacement the other columns show whether it is the motion alone.
   if (!read.columns.contains("x_b") && !read.second_columns.contains("x_b")) {
-    if (has_stiffness) refuse_beside("--stiffness", RecordKind::spring_slider);
     if (s.never_sticks && has_stiffness) throw UsageError("--never-sticks and --stiffness contradict each other");
     if (read.spring.mass.known() && !has_stiffness)
       throw UsageError("--mass is that of a spring slider: give --stiffness, too");
@@ -183,7 +169,11 @@ class GivenReader {
     const bool of_laws = std::ranges::any_of(
         slots_, [&](const Slot& slot) { return slot.parameter.name == name || slot.full_name() == name; });
     std::vector<Target> out;
-    if (state == nullptr || of_laws) {
+    if (is_driven_ && state == nullptr) {
+      throw UsageError(option + ": velocity steps and holds have no parameter '" + name + "', but " +
+                       listed(state_parameter_names()));
+    }
+    if (!is_driven_ && (state == nullptr || of_laws)) {
       out.push_back({name, options_.fit.given, "alpha=0.01..0.2s/mm", false,
                      [slot = slot_named(name, option), option](const std::string& text) {
                        return slot_value(text, slot, option);
@@ -246,7 +236,7 @@ class GivenReader {
 
 double parameter_value(const std::string& text, const Parameter& parameter, const std::string& option) {
   const Unit unit = find_unit(parameter.unit).value_or(Unit{});
-  return stated_value(text, unit.quantity, option, parameter.unit == "1" ? "" : parameter.unit);
+  return stated_value(text, unit.quantity, option);
 }
 
 Effect effect_named(const std::string& name) {
@@ -267,6 +257,8 @@ IdentifyOptions options_from(const Settings& s) {
   IdentifyOptions options = s.identify;
   options.read.threads = options.threads;
   options.read.kind = kind_from(s);
+  if (options.read.kind) refuse_unread(s.typed, *options.read.kind);
+  options.check_kind = [typed = s.typed](RecordKind kind) { refuse_unread(typed, kind); };
   read_conditions(s, options.read);
   refuse_contradictions(s, options);
   if (!s.instruments.empty()) options.instruments = read_instruments(s.instruments);

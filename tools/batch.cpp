@@ -104,10 +104,13 @@ void claim_results(const Campaign& campaign, const BatchOptions& batch) {
   }
   if (fs::exists(folder / campaign_name, ignored)) {
     const auto known = folder_of_campaign(batch.results);
-    const std::string own = campaign.folder.empty() ? "" : fs::weakly_canonical(campaign.folder, ignored).string();
+    const std::string own = folder_beside_results(campaign.folder, batch.results);
     if (!known || *known == own || batch.again) return;  // a damaged file is written anew
-    throw InputError("holds the results of " + (known->empty() ? "other traces" : *known),
-                     "name another folder with --out, or recompute them with --again", {batch.results, 0, ""});
+    const bool is_named = !own.empty() && !known->empty();
+    if (is_named && !fs::exists(folder / *known, ignored)) return;  // one of the two was moved or mounted elsewhere
+    const std::string other = known->empty() ? "other traces" : fs::weakly_canonical(folder / *known, ignored).string();
+    throw InputError("holds the results of " + other, "name another folder with --out, or recompute them with --again",
+                     {batch.results, 0, ""});
   }
   for (const Run& run : campaign.runs) {
     const std::string path = result_path(batch.results, run.name);

@@ -228,8 +228,7 @@ Option Command::add_each(const std::string& names, Read read, const std::string&
 Option Command::add_number(const std::string& name, const TypedNumber& how, std::function<void(double)> take,
                            const std::string& help) const {
   const auto read = [name, how, take = std::move(take)](const std::string& text) {
-    take(how.is_positive ? positive_value(text, how.quantity, name, how.bare_unit)
-                         : stated_value(text, how.quantity, name, how.bare_unit));
+    take((how.is_positive ? positive_value : stated_value)(text, how.quantity, name));
   };
   return add_read(name, read, help, how.otherwise);
 }
@@ -267,6 +266,10 @@ std::vector<Command::Typed> Command::typed() const {
                    option->get_positional(), option->get_group()});
   }
   return out;
+}
+
+void Command::keep_typed(std::vector<Typed>& out) const {
+  readers_->push_back([app = app_, status = status_, &out] { out = Command(*app, *status).typed(); });
 }
 
 std::vector<std::string> Command::verbs() const {

@@ -39,7 +39,12 @@ struct UsageError : std::runtime_error {
 namespace section {
 inline constexpr const char *kConditions = "Conditions", *kReading = "Reading", *kOutput = "Output", *kBatch = "Batch",
                             *kTogether = "Runs together", *kMeans = "What can be done", *kServer = "Server",
-                            *kStudy = "Study", *kFit = "Law and fit";
+                            *kStudy = "Study", *kFit = "Law and fit", *kSpring = "Mass on a spring",
+                            *kSteps = "Velocity steps and holds",
+                            *kRig = "Rig (default: the published test of the nearest radius, 4 rpm, 50 N)",
+                            *kFriction = "Friction (default: the published values at the nearest radius)",
+                            *kDrive = "Motion of the disc, load and temperature", *kScatter = "Scatter of break-away",
+                            *kSensors = "Sensors";
 }
 
 /// One option of a command. It is filled in when the command line is parsed.
@@ -62,11 +67,10 @@ class Option {
 struct TypedNumber {
   tribofit::Quantity quantity = tribofit::Quantity::dimensionless;
   const char* otherwise = "";  ///< what holds unless it is typed, which the help shows; empty: nothing
-  const char* bare_unit = "";  ///< of a number without one; empty: SI
   bool is_positive = false;    ///< it must be greater than zero
 };
-constexpr TypedNumber positive(tribofit::Quantity quantity, const char* otherwise = "", const char* bare_unit = "") {
-  return {quantity, otherwise, bare_unit, true};
+constexpr TypedNumber positive(tribofit::Quantity quantity, const char* otherwise = "") {
+  return {quantity, otherwise, true};
 }
 
 /// A command line of `identify`, or of one of its verbs: options, help, and what it runs.
@@ -149,6 +153,8 @@ class Command {
     std::string section;
   };
   std::vector<Typed> typed() const;
+  /// Keeps that when all are read.
+  void keep_typed(std::vector<Typed>& out) const;
 
   /// Of this command the empty text, then each verb and the verbs of each: "study speed".
   std::vector<std::string> verbs() const;

@@ -30,11 +30,11 @@ std::string for_terminal(std::string_view text, bool with_colour) {
   std::string shown;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t colour = with_colour ? length_of_colour(text.substr(at)) : 0;
-    const std::size_t length = std::max<std::size_t>(colour, 1);
-    const std::string_view part = text.substr(at, length);
-    const bool as_it_is = colour > 0 || part == "\n" || part == "\t";
+    const bool as_it_is = colour > 0 || text[at] == '\n' || text[at] == '\t';
+    const std::size_t end = as_it_is ? at + std::max<std::size_t>(colour, 1) : text.find_first_of("\033\n\t", at + 1);
+    const std::string_view part = text.substr(at, std::min(end, text.size()) - at);
     shown += as_it_is ? std::string(part) : tribofit::printable(part);
-    at += length;
+    at += part.size();
   }
   return shown;
 }

@@ -28,7 +28,7 @@ RequestedEffect with_starts(Effect effect) {
 }
 
 /// Reads "KEY" or "KEY:name=value,name=value", where a form of the effect may stand first
-/// (rate-state:healing,D_c=50um); a bare number is in the unit of the catalogue, what is not named keeps its start.
+/// (rate-state:healing,D_c=50um); what is not named keeps its start.
 RequestedEffect read_effect(const std::string& text) {
   auto colon = text.find(':');
   const std::size_t first_end = std::min(text.find(',', colon), text.size());
@@ -102,7 +102,7 @@ bool is_linear_speed(const std::string& text) {
 
 double disc_speed_from(const std::string& text, double radius, const std::string& option) {
   if (is_linear_speed(text)) return stated_value(text, Quantity::velocity, option) / radius;
-  return stated_value(text, Quantity::angular_velocity, option, "rpm");
+  return stated_value(text, Quantity::angular_velocity, option);
 }
 
 RequestedMachine machine_from(const MachineRequest& request) {
@@ -140,8 +140,6 @@ Machine with_typed(Machine machine, const MachineRequest& request) {
 
 namespace {
 
-constexpr const char* kRigGroup = "Rig (default: the published test of the nearest radius, 4 rpm, 50 N)";
-
 /// An option for every parameter that a law of the list has.
 void add_law_parameters(const Command& group, MachineRequest& r) {
   std::vector<Parameter> parameters;
@@ -165,22 +163,20 @@ void add_law_parameters(const Command& group, MachineRequest& r) {
 }  // namespace
 
 void add_machine_options(const Command& verb, MachineRequest& r) {
-  const Command rig = verb.in(kRigGroup);
-  rig.add_number("--radius", positive(Quantity::length, "15mm", "mm"), r.radius, "Friction radius");
+  const Command rig = verb.in(section::kRig);
+  rig.add_number("--radius", positive(Quantity::length, "15mm"), r.radius, "Friction radius");
   rig.add_option("--speed", r.speed, "Speed of the disc, e.g. 4rpm, or under the block, e.g. 6mm/s");
-  rig.add_number("--load", {Quantity::force, "", "N"}, r.load, "Normal force, e.g. 50N");
+  rig.add_number("--load", {Quantity::force}, r.load, "Normal force, e.g. 50N");
   add_machine_numbers(verb, r);
 }
 
 void add_machine_numbers(const Command& verb, MachineRequest& r) {
-  const Command rig = verb.in(kRigGroup);
-  rig.add_number("--mass", {Quantity::mass, "", "kg"}, r.mass, "Moving mass, e.g. 0.85kg");
-  rig.add_number("--stiffness", {Quantity::stiffness, "", "N/mm"}, r.stiffness,
-                 "Stiffness of the spring, e.g. 16.2N/mm");
-  rig.add_number("--damping", {Quantity::damping, "", "N s/mm"}, r.damping,
-                 "Damping of the block on its spring, e.g. 0.0047Ns/mm");
+  const Command rig = verb.in(section::kRig);
+  rig.add_number("--mass", {Quantity::mass}, r.mass, "Moving mass, e.g. 0.85kg");
+  rig.add_number("--stiffness", {Quantity::stiffness}, r.stiffness, "Stiffness of the spring, e.g. 16.2N/mm");
+  rig.add_number("--damping", {Quantity::damping}, r.damping, "Damping of the block on its spring, e.g. 0.0047Ns/mm");
   rig.add_number("--damping-ratio", {}, r.damping_ratio, "Damping as c/(2 sqrt(k m)), e.g. 0.02");
-  const Command law = verb.in("Friction (default: the published values at the nearest radius)");
+  const Command law = verb.in(section::kFriction);
   const auto read_law = [&r](const std::string& name) {
     r.law = as_usage([&] { return make_law(name); });
     r.law_is_typed = true;

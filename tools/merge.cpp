@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "batch.hpp"
 #include "tribofit/campaign/run_result.hpp"
 #include "tribofit/report/campaign.hpp"
@@ -27,9 +29,11 @@ ExitStatus merge(const Settings& s, const std::string& folder, const ReportOptio
     print(all.table);
     print(fmt::format("{} fitted, {} failed, {} missing; summary in {}summary.csv\n", summary.fitted, summary.failed,
                       summary.missing, as_folder(folder)));
+    const std::filesystem::path traces = std::filesystem::path(folder) / results.plan().folder;
     print(summary.missing > 0 && !results.plan().folder.empty()
               ? fmt::format("\nNext, to do what is missing, with the same options:\n  identify {} --out {}\n",
-                            shell_quoted(as_folder(results.plan().folder)), shell_quoted(as_folder(folder)))
+                            shell_quoted(as_folder(std::filesystem::proximate(traces).string())),
+                            shell_quoted(as_folder(folder)))
               : "\nNext, to see the options for one trace:\n  identify --help\n");
   }
   const bool whole = summary.failed == 0 && summary.missing == 0 && results.plan().problems.empty();

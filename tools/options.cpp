@@ -61,8 +61,8 @@ Selection::Cycles cycles_from(const std::string& text) {
 Selection::Stretch stretch_from(const std::string& text) {
   const auto stretch = as_usage([&] {
     const auto [from, to] = range_ends(text, "--exclude", "2.5s..3.1s");
-    return Selection::Stretch{stated_value(from, Quantity::time, "--exclude", "s"),
-                              stated_value(to, Quantity::time, "--exclude", "s")};
+    return Selection::Stretch{stated_value(from, Quantity::time, "--exclude"),
+                              stated_value(to, Quantity::time, "--exclude")};
   });
   if (stretch.from < stretch.to) return stretch;
   throw UsageError("--exclude: '" + text + "' does not run from an earlier to a later time");
@@ -96,6 +96,7 @@ void add_input_options(const Command& app, Settings& s) {
     in.add_each(
         name, [name, &out](const std::string& text) { add_pairs(text, name, out); }, help);
   };
+  app.keep_typed(s.typed);
   app.add_names("TRACE", s.traces, "Traces (text, MATLAB, UFF, TDMS), or folders of them");
   const Command conditions = app.in(section::kConditions);
   conditions.add_option("--radius", s.radius, "Friction radius, 15mm; one per step as 6mm,9mm,12mm");
@@ -131,7 +132,7 @@ void add_input_options(const Command& app, Settings& s) {
 
 void add_spring_options(const Command& app, Settings& s) {
   SpringDrive& spring = s.identify.read.spring;
-  const Command in = app.in("Mass on a spring");
+  const Command in = app.in(section::kSpring);
   add_condition(in, "--stiffness", Quantity::stiffness, spring.stiffness,
                 "Of the spring, where its pull, or the motion of the mass on it, is all that was recorded, 168N/m");
   add_condition(in, "--mass", Quantity::mass, spring.mass,
@@ -145,7 +146,7 @@ void add_spring_options(const Command& app, Settings& s) {
 
 void add_driven_options(const Command& app, Settings& s) {
   RateStateOptions& driven = s.identify.rate_state;
-  const Command in = app.in("Velocity steps and holds");
+  const Command in = app.in(section::kSteps);
   in.add_each("--evolution",
               in_place_of(driven.evolutions, [](const std::string& name) { return *find_state_evolution(name); }),
               "Law of the state, ageing or slip (repeatable; default both)")
@@ -156,11 +157,10 @@ void add_driven_options(const Command& app, Settings& s) {
         "--detrend", [&](const std::string& name) { driven.detrend = *find_detrend(name); },
         "Line that is taken off each step, over displacement or time, auto (default: the better one) or none")
       .one_of(detrend_names());
-  in.add_read(
-      "--reference-speed", [&](const std::string& text) { driven.reference_speed = reference_speed_from(text); },
-      "v0, 1um/s (default: the speed before the first step)");
-  in.add_number("--from", {Quantity::time, "", "s"}, driven.from, "Nothing before this time is used, 120s");
-  in.add_number("--to", {Quantity::time, "", "s"}, driven.to, "Nothing after this time is used, 900s");
+  in.add_number("--reference-speed", positive(Quantity::velocity), driven.reference_speed,
+                "v0, 1um/s (default: the speed before the first step)");
+  in.add_number("--from", {Quantity::time}, driven.from, "Nothing before this time is used, 120s");
+  in.add_number("--to", {Quantity::time}, driven.to, "Nothing after this time is used, 900s");
 }
 
 void add_model_options(const Command& app, Settings& s) {

@@ -21,14 +21,6 @@ struct MeansOptions {
 
 constexpr std::size_t kLevelsOfRange = 4;  // 1rpm..8rpm: 1, 2, 4 and 8 rpm
 
-/// One value with its unit, greater than zero. A bare number would be taken in SI, which nobody means here.
-double value_of(const std::string& text, Quantity quantity, const std::string& option) {
-  if (text.empty() || is_bare_number(text))
-    throw InputError(option + ": '" + text + "' has no " + (text.empty() ? "value" : "unit"),
-                     "write it as " + std::string(example_of(quantity)));
-  return positive_value(text, quantity, option);
-}
-
 /// A number as a person sets it: of two digits, within 5 %.
 double two_digits(double x) {
   const double unit = std::pow(10.0, std::floor(std::log10(x)) - 1);
@@ -59,18 +51,18 @@ std::vector<double> values_of(const std::string& text, const std::string& option
 /// Of the disc, or at the radius.
 double disc_speed(const std::string& text, const std::string& radius) {
   const std::string option = "--speeds";
-  if (!is_linear_speed(text)) return value_of(text, Quantity::angular_velocity, option);
+  if (!is_linear_speed(text)) return positive_value(text, Quantity::angular_velocity, option);
   if (radius.empty())
     throw InputError(option + ": '" + text + "' is a speed at the radius, which is not known",
                      "give --radius 15mm, or speeds in rpm");
-  return value_of(text, Quantity::velocity, option) / stated_value(radius, Quantity::length, "--radius");
+  return positive_value(text, Quantity::velocity, option) / stated_value(radius, Quantity::length, "--radius");
 }
 
 void add_means_options(const Command& app, MeansOptions& m) {
   const Command in = app.in(section::kMeans);
   const auto add = [&](const char* name, Quantity quantity, std::vector<double>& values, const char* help) {
     const auto read = [name, quantity, &values](const std::string& text) {
-      values = values_of(text, name, [&](const std::string& part) { return value_of(part, quantity, name); });
+      values = values_of(text, name, [&](const std::string& part) { return positive_value(part, quantity, name); });
     };
     in.add_read(name, read, help);
   };
@@ -80,18 +72,20 @@ void add_means_options(const Command& app, MeansOptions& m) {
   add("--loads", Quantity::force, means.loads, "Normal forces, 20N..100N");
   add("--springs", Quantity::stiffness, means.springs, "Other springs, by their stiffness, 5N/mm,20N/mm");
   add("--rates", Quantity::frequency, means.rates, "Rates of sampling, 50kHz");
-  in.add_number("--minutes", positive(Quantity::time, "", "min"), means.longest,
-                "Longest time of all runs of an experiment together (default 10)");
+  const auto read_minutes = [&](const std::string& text) {
+    means.longest = positive_value(is_bare_number(text) ? text + "min" : text, Quantity::time, "--minutes");
+  };
+  in.add_read("--minutes", read_minutes, "Longest time of all runs of an experiment together (default 10)");
   in.add_read(
       "--pauses",
       [&](const std::string& text) {
         for (const std::string& part : split(text, ','))
-          means.longest_pause = std::max(means.longest_pause, value_of(part, Quantity::time, "--pauses"));
+          means.longest_pause = std::max(means.longest_pause, positive_value(part, Quantity::time, "--pauses"));
       },
       "The disc can be stopped between slides, for up to 100s");
   in.add_read(
       "--mass-below",
-      [&](const std::string& text) { means.mass_below = value_of(text, Quantity::mass, "--mass-below"); },
+      [&](const std::string& text) { means.mass_below = positive_value(text, Quantity::mass, "--mass-below"); },
       "Mass that can be added below the force sensor, 100g");
   in.add_flag("--reversing", means.reversing, "The disc can turn forth and back");
   in.add_flag("--tap", means.tap, "The block can be tapped, and both channels recorded");

@@ -3,27 +3,28 @@
 
 #include "settings.hpp"
 #include "tribofit/ingest/spelling.hpp"
+#include "tribofit/output/text.hpp"
 #include "typed_values.hpp"
 
 using namespace tribofit;
 
 namespace {
 
-constexpr std::array<StateParameter, 7> kStateParameters = {{{"a", Quantity::dimensionless, "a=0.01"},
-                                                             {"b", Quantity::dimensionless, "b=0.012"},
-                                                             {"D_c", Quantity::length, "D_c=10um"},
-                                                             {"b_2", Quantity::dimensionless, "b_2=0.002"},
-                                                             {"D_c2", Quantity::length, "D_c2=100um"},
-                                                             {"k", Quantity::inverse_length, "k=0.005/um"},
-                                                             {"mu_0", Quantity::dimensionless, "mu_0=0.6"}}};
-
-/// A bare number would be one of metres: a million times what is meant.
-void require_unit(std::string_view text, const std::string& option, const char* example) {
-  if (is_bare_number(text))
-    throw UsageError(option + ": '" + std::string(trimmed(text)) + "' has no unit; give it, as in " + example);
-}
+constexpr std::array<StateParameter, 7> kStateParameters = {{{"a", Quantity::dimensionless},
+                                                             {"b", Quantity::dimensionless},
+                                                             {"D_c", Quantity::length},
+                                                             {"b_2", Quantity::dimensionless},
+                                                             {"D_c2", Quantity::length},
+                                                             {"k", Quantity::inverse_length},
+                                                             {"mu_0", Quantity::dimensionless}}};
 
 }  // namespace
+
+std::vector<std::string> state_parameter_names() {
+  std::vector<std::string> names;
+  for (const StateParameter& parameter : kStateParameters) names.emplace_back(parameter.name);
+  return names;
+}
 
 const StateParameter* find_state_parameter(std::string_view name) {
   const auto at = std::ranges::find(kStateParameters, name, &StateParameter::name);
@@ -31,17 +32,16 @@ const StateParameter* find_state_parameter(std::string_view name) {
 }
 
 double StateParameter::value(std::string text, const std::string& option, bool in_newtons) const {
-  if (quantity != Quantity::dimensionless) require_unit(text, option, example);
   if (quantity == Quantity::inverse_length && unit_of(text).starts_with('/') && text.front() != '/')
     text.insert(text.find('/'), " 1");  // "0.005/um" is 0.005 1/um
   const Quantity own = !in_newtons                            ? quantity
                        : quantity == Quantity::inverse_length ? Quantity::stiffness
                                                               : Quantity::force;
-  return parse_quantity(text, own, option + " " + std::string(name));
+  return stated_value(text, own, option + " " + std::string(name));
 }
 
 std::map<std::string, double> rate_state_values(const std::string& text, const std::string& option) {
-  const std::string example = "NAME=VALUE of a, b, D_c, k, mu_0, b_2 or D_c2";
+  const std::string example = "NAME=VALUE of " + enumerated(state_parameter_names(), "or");
   std::map<std::string, double> values;
   for (const auto& [name, value] : named_texts({text}, option, example)) {
     const StateParameter* parameter = find_state_parameter(name);
@@ -60,20 +60,12 @@ std::vector<LoadPointPhase> phases_from(const std::string& text, const std::stri
   std::vector<LoadPointPhase> phases;
   for (const std::string& part : split(text, ',')) {
     const auto [time, rest] = as_usage([&] { return two_parts(part, ":", option, example); });
-    const double begin = stated_value(time, Quantity::time, option, "s");
-    const std::string speed(trimmed(rest));
-    const bool rests = !speed.empty() && speed.find_first_not_of("0.") == std::string::npos;
-    if (!rests) require_unit(speed, option, "0s:2um/s,60s:10um/s");
-    const double value = rests ? 0 : stated_value(speed, Quantity::velocity, option);
+    const double begin = stated_value(time, Quantity::time, option);
+    const double value = stated_value(rest, Quantity::velocity, option);
     if (!phases.empty() && !(begin > phases.back().begin))
       throw UsageError(option + ": '" + part + "' does not come after the time before it");
     if (!(value >= 0)) throw UsageError(option + ": '" + part + "' goes backwards; give speeds of at least 0");
     phases.push_back({begin, value});
   }
   return phases;
-}
-
-double reference_speed_from(const std::string& text) {
-  require_unit(text, "--reference-speed", "1um/s");
-  return positive_value(text, Quantity::velocity, "--reference-speed");
 }

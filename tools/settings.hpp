@@ -31,6 +31,7 @@ struct Settings {
   bool again = false;
   std::vector<std::string> share, vary;  // parameters common to runs
   bool quiet = false;
+  std::vector<Command::Typed> typed;  // all of it
 };
 
 /// The options that the verbs share, so that each is spelt, explained and read once.
@@ -48,6 +49,8 @@ void add_threads_option(const Command& app, Settings& settings);
 /// The page of charts and the pictures; with all else that results are written to, tables as CSV for some verbs.
 void add_output_options(const Command& app, Settings& settings, bool with_tables = false);
 void add_report_option(const Command& app, Settings& settings);
+/// Usage error: an option is typed that means nothing for a record of this kind.
+void refuse_unread(const std::vector<Command::Typed>& typed, tribofit::RecordKind kind);
 /// What several runs have in common, and earlier values.
 void add_pooling_options(const Command& app, Settings& settings);
 void add_compare_option(const Command& app, Settings& settings);
@@ -74,25 +77,23 @@ void refuse_clashes(const std::vector<tribofit::Effect>& effects, const std::vec
 /// The keys of all laws, as in "a, b or c".
 std::string list_of_laws();
 
-/// A value of a parameter of a law or an effect; a bare number is in the unit in which it is shown.
+/// A value of a parameter of a law or an effect, in SI.
 double parameter_value(const std::string& text, const tribofit::Parameter& parameter, const std::string& option);
 
 /// Whether --speed states those of a load point by time.
 bool names_load_point_speeds(const Settings& settings);
 /// "0s:2um/s,60s:10um/s": speeds from times on. `option`: for messages.
 std::vector<tribofit::LoadPointPhase> phases_from(const std::string& text, const std::string& option);
-/// --reference-speed, v0.
-double reference_speed_from(const std::string& text);
 
 /// A parameter of friction by rate and state, of its spring, or its base friction mu_0.
 struct StateParameter {
   std::string_view name;
   tribofit::Quantity quantity;
-  const char* example;
 
   /// In SI. in_newtons: of friction as a force.
   double value(std::string text, const std::string& option, bool in_newtons = false) const;
 };
+std::vector<std::string> state_parameter_names();
 /// Null where there is none.
 const StateParameter* find_state_parameter(std::string_view name);
 /// "a=0.01,b=0.014,D_c=10um,k=0.002/um" by names, SI. Usage error for others.

@@ -246,18 +246,18 @@ void add_options(const Command& verb, SimulateRequest& r) {
   SimulationOptions& options = r.options;
   Sensors& s = r.sensors;
   verb.add_option("--out", r.out, "CSV file to write; the truth goes beside it as .json").required();
-  verb.add_number("--duration", positive(Quantity::time, "20s", "s"), options.duration, "Duration of the record");
-  verb.add_number("--rate", positive(Quantity::frequency, "20kHz", "Hz"), options.rate, "Samples per second");
+  verb.add_number("--duration", positive(Quantity::time, "20s"), options.duration, "Duration of the record");
+  verb.add_number("--rate", positive(Quantity::frequency, "20kHz"), options.rate, "Samples per second");
   verb.add_read(
       "--seed", [&](const std::string& text) { options.seed = s.seed = stated_seed(text); },
       "Seed of noise and scatter", "1");
   verb.add_flag("--quiet", r.quiet, "Print nothing");
   add_machine_options(verb, r.machine);
   add_steps_options(verb, r);
-  const Command rig = verb.in("Motion of the disc, load and temperature");
-  rig.add_number("--run-up", positive(Quantity::time, "", "s"), r.run_up,
+  const Command rig = verb.in(section::kDrive);
+  rig.add_number("--run-up", positive(Quantity::time), r.run_up,
                  "Start from standstill and reach the speed in this time; else the start is settled");
-  rig.add_number("--reversing", {Quantity::frequency, "", "Hz"}, r.reversing,
+  rig.add_number("--reversing", {Quantity::frequency}, r.reversing,
                  "The disc goes forth and back as a sine of this frequency; --speed is its peak");
   rig.add_option("--speed-steps", r.speed_steps,
                  "Speeds from times on, of the disc 0s:2rpm,10s:4rpm,20s:-4rpm, of a load point 0s:2um/s,60s:10um/s");
@@ -267,12 +267,12 @@ void add_options(const Command& verb, SimulateRequest& r) {
   rig.add_option("--temperature", r.temperature,
                  "Temperature channel: a ramp 20degC..60degC, or a swing between the two 20degC..60degC,15s");
   constexpr Quantity kPlain = Quantity::dimensionless;
-  const Command law = verb.in("Scatter of break-away");
+  const Command law = verb.in(section::kScatter);
   law.add_number("--scatter", {kPlain, "0"}, options.scatter.deviation,
                  "Standard deviation of mu_s from cycle to cycle");
   law.add_number("--wander", {kPlain, "0"}, options.scatter.wander,
                  "Correlation of the scatter between neighbouring cycles");
-  const Command in = verb.in("Sensors");
+  const Command in = verb.in(section::kSensors);
   in.add_number("--noise-mu", {kPlain, "0"}, s.friction_noise, "Standard deviation of the noise on mu");
   in.add_number("--noise-v", {Quantity::velocity, "0mm/s"}, s.velocity_noise, "Standard deviation of the noise on v_b");
   in.add_number("--noise-colour", {kPlain, "0"}, s.noise_colour, "AR(1) coefficient of both noises; 0 is white");
@@ -312,11 +312,14 @@ void write_record(const std::string& path, const std::string& truth_path,
 }  // namespace tribofit
 
 void add_simulate(const Command& app) {
-  const Command verb = app.add_verb(
-      "simulate", "Writes a simulated trace with the truth beside it",
-      "Example:\n  identify simulate --radius 15mm --effect viscous:sigma=0.001 --noise-mu 0.003 --scatter 0.004 --out "
-      "trace.csv");
+  const Command verb = app.add_verb("simulate", "Writes a simulated trace with the truth beside it",
+                                    "Example:\n  identify simulate --radius 15mm --effect viscous:sigma=0.001s/mm "
+                                    "--noise-mu 0.003 --scatter 0.004 --out "
+                                    "trace.csv");
   auto request = std::make_shared<tribofit::SimulateRequest>();
   tribofit::add_options(verb, *request);
-  verb.on_run([request] { tribofit::run_simulate(*request); });
+  verb.on_run([request, verb] {
+    refuse_unread(verb.typed(), tribofit::find_record_kind(request->kind).value_or(tribofit::RecordKind::stick_slip));
+    tribofit::run_simulate(*request);
+  });
 }

@@ -26,15 +26,15 @@ SpeedProfile stepped_speed_from(const std::string& steps, const std::vector<std:
   std::vector<double> times, speeds;
   for (const std::string& step : steps.empty() ? std::vector<std::string>() : split(steps, ',')) {
     const auto [time, value] = two_parts(step, ":", "--speed-steps", "0s:2rpm,10s:4rpm");
-    times.push_back(stated_value(time, Quantity::time, "--speed-steps", "s"));
-    speeds.push_back(stated_value(value, Quantity::angular_velocity, "--speed-steps", "rpm"));
+    times.push_back(stated_value(time, Quantity::time, "--speed-steps"));
+    speeds.push_back(stated_value(value, Quantity::angular_velocity, "--speed-steps"));
   }
   if (times.empty()) times = {0}, speeds = {speed};
   std::vector<Pause> pauses;
   for (const std::string& text : pause_texts) {
     const auto [begin, duration] = two_parts(text, ",", "--pause", "10s,5s");
     pauses.push_back(
-        {stated_value(begin, Quantity::time, "--pause", "s"), stated_value(duration, Quantity::time, "--pause", "s")});
+        {stated_value(begin, Quantity::time, "--pause"), stated_value(duration, Quantity::time, "--pause")});
   }
   return stepped_speed(std::move(times), std::move(speeds), pauses);
 }
@@ -42,8 +42,8 @@ SpeedProfile stepped_speed_from(const std::string& steps, const std::vector<std:
 /// "10N,7s": a sine of that amplitude and period on the load; the mean load becomes that of the record.
 void swing_load(const std::string& text, double duration, Drive& drive) {
   const auto [size, time] = two_parts(text, ",", "--load-swing", "10N,7s");
-  const double amplitude = stated_value(size, Quantity::force, "--load-swing", "N");
-  const double period = stated_value(time, Quantity::time, "--load-swing", "s");
+  const double amplitude = stated_value(size, Quantity::force, "--load-swing");
+  const double period = stated_value(time, Quantity::time, "--load-swing");
   if (!(std::abs(amplitude) < drive.mean_load) || !(period > 0)) {
     throw InputError("--load-swing is not smaller than the load, or has no period", "write it as e.g. 10N,7s");
   }
@@ -59,12 +59,12 @@ void vary_temperature(const std::string& text, double duration, Drive& drive) {
   const auto comma = text.find(',');
   const char* example = "20degC..60degC or 20degC..60degC,15s";
   const auto [from, to] = range_ends(text.substr(0, comma), "--temperature", example);
-  const double first = stated_value(from, Quantity::temperature, "--temperature", "degC");
-  const double last = stated_value(to, Quantity::temperature, "--temperature", "degC");
+  const double first = stated_value(from, Quantity::temperature, "--temperature");
+  const double last = stated_value(to, Quantity::temperature, "--temperature");
   if (comma == std::string::npos) {
     drive.temperature = [=](double t) { return first + (last - first) * std::clamp(t / duration, 0.0, 1.0); };
   } else {
-    const double period = stated_value(text.substr(comma + 1), Quantity::time, "--temperature", "s");
+    const double period = stated_value(text.substr(comma + 1), Quantity::time, "--temperature");
     if (!(period > 0))
       throw InputError("the period of --temperature is not positive", "write it as " + std::string(example));
     drive.temperature = [=](double t) {

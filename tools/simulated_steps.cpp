@@ -98,7 +98,7 @@ std::string truth_of(const SimulateRequest& r, const RateStateMachine& machine, 
 }  // namespace
 
 void add_steps_options(const Command& verb, SimulateRequest& r) {
-  const Command in = verb.in("Velocity steps and holds");
+  const Command in = verb.in(section::kSteps);
   in.add_option("--kind", r.kind,
                 "velocity-steps or slide-hold-slide: a load point at the --speed-steps, 0s:2um/s,60s:10um/s")
       .one_of({"velocity-steps", "slide-hold-slide"});
@@ -109,9 +109,8 @@ void add_steps_options(const Command& verb, SimulateRequest& r) {
         "--evolution", [&r](const std::string& name) { r.evolution = *find_state_evolution(name); },
         "Law of its state, ageing (default) or slip")
       .one_of(state_evolution_names());
-  in.add_read(
-      "--reference-speed", [&r](const std::string& text) { r.reference_speed = reference_speed_from(text); },
-      "v0, at which mu_0 holds, 1um/s (default: the first speed)");
+  in.add_number("--reference-speed", positive(Quantity::velocity), r.reference_speed,
+                "v0, at which mu_0 holds, 1um/s (default: the first speed)");
   in.add_number("--drift", {Quantity::inverse_time, "0/s"}, r.drift, "Slope of its friction over time, 1e-5/s");
 }
 

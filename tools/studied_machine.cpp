@@ -30,7 +30,7 @@ void refuse_effects_without_size(const std::vector<std::string>& effects) {
 
 StudiedMachine given(const Settings& settings, MachineRequest typed) {
   refuse_effects_without_size(typed.effects);
-  if (!settings.radius.empty()) typed.radius = positive_value(settings.radius, Quantity::length, "--radius", "mm");
+  if (!settings.radius.empty()) typed.radius = positive_value(settings.radius, Quantity::length, "--radius");
   typed.speed = settings.speed;
   const Condition& load = settings.identify.read.conditions.load;
   if (load.known()) typed.load = load.value;

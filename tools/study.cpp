@@ -37,9 +37,8 @@ void set_sharpness(double sharpness, SettleOptions& settle) {
   settle.sharpness = sharpness;
 }
 
-/// A speed of the disc as omega r [m/s], from "6mm/s", "6" or "4rpm".
+/// A speed of the disc as omega r [m/s], from "6mm/s" or "4rpm".
 double velocity_from(const std::string& text, const Machine& machine, const std::string& option) {
-  if (is_bare_number(text)) return positive_value(text, Quantity::velocity, option, "mm/s");
   const double velocity = machine.radius * disc_speed_from(text, machine.radius, option);
   if (!(velocity > 0))
     throw InputError(option + ": '" + text + "' is not greater than zero", "give e.g. 6mm/s or 4rpm");
@@ -77,8 +76,8 @@ MapAxis axis_from(const std::string& text, const Machine& machine, const std::st
       count = std::stoul(number);
     }
     const auto [lower, upper] = range_ends(range, option, "stiffness=8N/mm..20N/mm:100");
-    low = stated_value(lower, axis.variable.quantity, option, axis.variable.unit);
-    high = stated_value(upper, axis.variable.quantity, option, axis.variable.unit);
+    low = stated_value(lower, axis.variable.quantity, option);
+    high = stated_value(upper, axis.variable.quantity, option);
   } else if (axis.variable.name == "ratio") {
     high = std::min(high, 1.0);
   }
@@ -190,7 +189,7 @@ Command add_kind(const Command& study, const char* name, const char* help, const
   add_input_options(kind, r->settings);
   add_machine_numbers(kind, r->machine);
   kind.add_number(
-      "--sharpness", positive(Quantity::inverse_velocity, "", "s/mm"),
+      "--sharpness", positive(Quantity::inverse_velocity),
       [r](double sharpness) { set_sharpness(sharpness, r->settle); },
       "Smooth the law by an arctangent, e.g. 500s/mm (default: stick and slip as events)");
   kind.add_choice<StartFrom>("--from", r->settle.start,

@@ -33,10 +33,21 @@ double largest(Quantity quantity) {
 /// The smallest value in SI that is not zero: below it squares and reciprocals leave the range of doubles.
 constexpr double kSmallest = 1e-20;
 
+/// A bare 15 is millimetres to one reader and metres to another; 0 is the same in all units but those of temperature.
+void refuse_without_unit(std::string_view text, double value, Quantity quantity, const std::string& option) {
+  if (quantity == Quantity::dimensionless || (value == 0 && quantity != Quantity::temperature)) return;
+  std::string meant;
+  for (const std::string& example : split(example_of(quantity), " or "))
+    meant += (meant.empty() ? "" : " or ") + std::string(trimmed(text)) +
+             example.substr(example.find_first_not_of("0123456789."));
+  throw UsageError(fmt::format("{}: '{}' has no unit; write {}", option, trimmed(text), meant));
+}
+
 }  // namespace
 
-double stated_value(std::string_view text, Quantity quantity, const std::string& option, std::string_view bare_unit) {
-  const double value = parse_quantity(text, quantity, option, bare_unit);
+double stated_value(std::string_view text, Quantity quantity, const std::string& option) {
+  const double value = parse_quantity(text, quantity, option);
+  if (is_bare_number(text)) refuse_without_unit(text, value, quantity, option);
   const double size = std::abs(value);
   if (size == 0 || (size >= kSmallest && size <= largest(quantity))) return value;
   throw InputError(
@@ -44,8 +55,8 @@ double stated_value(std::string_view text, Quantity quantity, const std::string&
       fmt::format("check the number and its unit; {} such as {} is meant", to_string(quantity), example_of(quantity)));
 }
 
-double positive_value(std::string_view text, Quantity quantity, const std::string& option, std::string_view bare_unit) {
-  const double value = stated_value(text, quantity, option, bare_unit);
+double positive_value(std::string_view text, Quantity quantity, const std::string& option) {
+  const double value = stated_value(text, quantity, option);
   if (value > 0) return value;
   throw InputError(fmt::format("{}: '{}' is not greater than zero", option, text),
                    fmt::format("give {} such as {}", with_article(to_string(quantity)), example_of(quantity)));

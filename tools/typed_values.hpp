@@ -13,14 +13,13 @@
 /// What is typed as the value of an option: numbers with units, ranges of them, and values by name. The one grammar of
 /// all options.
 
-/// A value in SI. Throws tribofit::InputError that names the option as parse_quantity does, and for a value that no
-/// machine has: it is a slip of the finger or of the unit, and what it would lead to costs hours or memory.
-double stated_value(std::string_view text, tribofit::Quantity quantity, const std::string& option,
-                    std::string_view bare_unit = {});
+/// A value in SI. Usage error: a quantity that has a unit is typed without one. Throws tribofit::InputError that names
+/// the option as parse_quantity does, and for a value that no machine has: it is a slip of the finger or of the unit,
+/// and what it would lead to costs hours or memory.
+double stated_value(std::string_view text, tribofit::Quantity quantity, const std::string& option);
 
 /// The same of a value that must be greater than zero.
-double positive_value(std::string_view text, tribofit::Quantity quantity, const std::string& option,
-                      std::string_view bare_unit = {});
+double positive_value(std::string_view text, tribofit::Quantity quantity, const std::string& option);
 
 /// What stands behind the number; empty for a bare number.
 std::string unit_of(std::string_view text);

@@ -14,18 +14,18 @@ OPTIONS = {"files": {"nargs": "*", "metavar": "'[OPTIONS] FILE'"}}
 RIG = ["--radius", "15mm", "--noise-mu", "0.003", "--scatter", "0.003"]
 RECORDS = {
     "nothing": "",
-    "viscous": "--effect viscous:sigma=0.0015",
+    "viscous": "--effect viscous:sigma=0.0015s/mm",
     "frictional-lag": "--effect frictional-lag:tau=2ms",
     "rate-state": "--effect rate-state:D_c=40um,a=0.005",
-    "bristle": "--effect bristle:sigma0=60,sigma1=0.001",
+    "bristle": "--effect bristle:sigma0=60/mm,sigma1=0.001s/mm",
     "contact-spin": "--effect contact-spin:R_c=4mm",
     "run-in": "--effect run-in:w=0.2,L=200mm",
-    "runout": "--effect runout:A=0.04,phase=1",
-    "lag and runout": "--effect frictional-lag:tau=2ms --effect runout:A=0.04,phase=1",
+    "runout": "--effect runout:A=0.04,phase=1rad",
+    "lag and runout": "--effect frictional-lag:tau=2ms --effect runout:A=0.04,phase=1rad",
 }
 OTHERS = {  # options, duration, rate
     "never sticks": ("--speed 40rpm --damping-ratio 0.5 --reversing 0.5Hz --noise-v 0.2mm/s", "20s", "20kHz"),
-    "a hundred times slower": ("--speed 0.04rpm --mass 8500kg --alpha 5 --damping-ratio 0.02 --noise-v 2um/s", "2000s", "200Hz"),
+    "a hundred times slower": ("--speed 0.04rpm --mass 8500kg --alpha 5s/mm --damping-ratio 0.02 --noise-v 2um/s", "2000s", "200Hz"),
 }
 
 

@@ -14,7 +14,7 @@ RECORDS = {  # effect, noise of friction, of v_b
     "filter, loud": ("force-bandwidth:f_0=200Hz,zeta=0.7", "0.012", "0.08mm/s"),
     "heating": ("heating:h=0.05,tau_h=8s", "0.006", "0.04mm/s"),
     "run-in": ("run-in:w=0.05,L=60mm", "0.006", "0.04mm/s"),
-    "drift": ("drift:d=-0.004", "0.006", "0.04mm/s"),
+    "drift": ("drift:d=-0.004/s", "0.006", "0.04mm/s"),
     "delay, loud": ("channel-delay:delay=0.6ms", "0.012", "0.08mm/s"),
 }
 MEANS = {

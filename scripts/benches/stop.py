@@ -171,7 +171,7 @@ def run(given):
         harness.record(given.identify, here("long.csv"), "120s")
         harness.record(given.identify, here("trace.csv"))
         harness.record(given.identify, here("open.csv"), "10s", "5kHz", [*harness.CONDITIONS, *OPEN])
-        harness.record(given.identify, here("steps.csv"), "220s", "100", [*STEPS, "--speed-steps", SPEEDS])
+        harness.record(given.identify, here("steps.csv"), "220s", "100Hz", [*STEPS, "--speed-steps", SPEEDS])
         harness.copies(here("trace.csv"), here("runs"), [f"r{k}.csv" for k in range(8)], 10)
         harness.measured([given.identify, "--radius", "15mm", "--quiet", "--out", here("results"), here("runs")])
         harness.print_machine(given)

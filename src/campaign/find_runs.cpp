@@ -14,10 +14,12 @@
 #include "output/csv_table.hpp"
 #include "output/json.hpp"
 #include "tribofit/campaign/run.hpp"
+#include "tribofit/campaign/run_result.hpp"
 #include "tribofit/ingest/input_error.hpp"
 #include "tribofit/ingest/output_tables.hpp"
 #include "tribofit/ingest/spelling.hpp"
 #include "tribofit/output/digits.hpp"
+#include "tribofit/output/text.hpp"
 
 namespace tribofit {
 namespace {
@@ -138,30 +140,48 @@ void add_folder(const std::string& folder, const ReadOptions& read, const FindOp
   }
 }
 
-/// A name that JSON can hold: bytes that are not UTF-8 and control characters become '_'.
-std::string plain(std::string name) {
+/// A name that JSON and a line can hold and that shows what it is: other bytes become another one.
+std::string plain(std::string name, char instead = '_') {
   const bool is_utf8 = guess_encoding(name + "\n") == Encoding::utf8;  // a letter may not be cut off at the end
-  for (char& c : name) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7F || (byte > 0x7F && !is_utf8)) c = '_';
+  for (std::size_t k = 0; k < name.size(); ++k) {
+    const bool is_broken = !is_utf8 && static_cast<unsigned char>(name[k]) > 0x7F;
+    const std::size_t bytes = is_broken ? 1 : unseen_bytes(std::string_view(name).substr(k));
+    std::fill_n(name.begin() + static_cast<std::ptrdiff_t>(k), bytes, instead);
   }
+  return name;
+}
+
+/// So long that the files of a run, which are called like it, have names.
+std::string shortened(std::string name) {
+  std::size_t end = std::min<std::size_t>(name.size(), 200);
+  while (end < name.size() && end > 0 && (static_cast<unsigned char>(name[end]) & 0xC0) == 0x80) --end;
+  name.resize(end);
+  return name;
+}
+
+/// What a cell of a manifest calls a file: what it cannot hold is a '?', which fits that file.
+std::string in_manifest(const std::string& file) {
+  std::string name = plain(file, '?');
+  for (char* end : {&name.front(), &name.back()}) *end = *end == ' ' ? '?' : *end;
+  for (char& c : name) c = name != file && (c == '[' || c == '\\') ? '?' : c;  // of the language of patterns
   return name;
 }
 
 /// What a file name is called by, from short to long: "a" and "sub-a.csv" of sub/a.csv.
 std::string short_name(const Run& run) {
-  return plain(fs::path(run.file).stem().string());
+  return shortened(plain(fs::path(run.file).stem().string()));
 }
 
 std::string long_name(const Run& run) {
   std::string name = replaced(run.file, "/", "-");
   name.erase(0, name.find_first_not_of(".-"));
-  return name.empty() ? "run" : plain(name);
+  return name.empty() ? "run" : shortened(plain(name));
 }
 
 /// The short name where it is the only one of its kind, else the long one, with a number where that is taken as well.
 void name_runs(std::vector<Run>& runs) {
-  std::map<std::string, std::size_t> count = {{"summary", 1}, {"campaign", 1}};  // files of the campaign itself
+  std::map<std::string, std::size_t> count;
+  for (const char* own : campaign_files) ++count[fs::path(own).stem().string()];
   for (const Run& run : runs) ++count[short_name(run)];
   std::set<std::string> taken, seen;
   for (Run& run : runs) {
@@ -250,12 +270,12 @@ ManifestDraft draft_manifest(const std::string& folder, const std::optional<Name
     remarks.push_back(
         fmt::format("{} of {} runs: no radius found; fill it in, as in 15mm", draft.runs - draft.complete, draft.runs));
   }
-  for (const std::string& remark : remarks) draft.text += "# " + remark + "\n";
+  for (const std::string& remark : remarks) draft.text += "# " + printable(remark) + "\n";
   draft.text += csv_line("file", "radius", "speed", "load", "repeat", Json(others));
   for (const auto& [file, fields] : rows) {
     Json values = Json::array();
     for (const std::string& name : others) values.push_back(value_of(fields.others, name));
-    draft.text += csv_line(file, fields.radius, fields.speed, fields.load, fields.repeat, values);
+    draft.text += csv_line(in_manifest(file), fields.radius, fields.speed, fields.load, fields.repeat, values);
   }
   return draft;
 }

@@ -70,11 +70,15 @@ std::string settings_hash(const Run& run, const std::string& hash_of_options) {
   return text.hash();
 }
 
+std::string folder_beside_results(const std::string& folder, const std::string& results) {
+  std::error_code ignored;
+  if (folder.empty()) return "";
+  return fs::proximate(fs::weakly_canonical(folder, ignored), fs::weakly_canonical(results, ignored), ignored).string();
+}
+
 std::string campaign_json(const Campaign& campaign, const BatchOptions& options) {
   const std::string hash = options_hash(options);
-  std::error_code ignored;
-  CampaignPlan plan{"", {}, campaign.problems};
-  if (!campaign.folder.empty()) plan.folder = fs::weakly_canonical(campaign.folder, ignored).string();
+  CampaignPlan plan{folder_beside_results(campaign.folder, options.results), {}, campaign.problems};
   for (const Run& run : campaign.runs) plan.runs.push_back({run.name, run.file, settings_hash(run, hash)});
   Json json = object("tool", object("name", "tribofit", "version", version));
   json.update(json_of(plan));

@@ -16,6 +16,7 @@
 #include "csv/text_table.hpp"
 #include "input_file.hpp"
 #include "limits.hpp"
+#include "output/csv_table.hpp"
 #include "raw_table.hpp"
 #include "stated_conditions.hpp"
 #include "tribofit/ingest/input_error.hpp"
@@ -152,7 +153,8 @@ class ManifestReader {
   }
 
   void read_row(std::size_t at) {
-    const std::vector<std::string> cells = text_.cells_of(at);
+    std::vector<std::string> cells = text_.cells_of(at);
+    for (std::string& cell : cells) cell.erase(0, cell.starts_with('\'') && is_formula(cell.substr(1)) ? 1 : 0);
     ManifestRow row;
     row.line = text_.rows[at].line;
     file_ = cells[static_cast<std::size_t>(find("file") - columns_.data())];

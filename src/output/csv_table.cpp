@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -26,10 +28,21 @@ void CsvLine::add_number(double value) {
   }
 }
 
+bool is_formula(std::string_view text) {
+  const std::size_t first = std::min(text.find_first_not_of('\''), text.size());
+  if (std::string_view("=+-@\t\r").find(text.substr(first, 1)) == std::string_view::npos || first == text.size())
+    return false;
+  double number = 0;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data() + (text[0] == '+' ? 1 : 0), end, number);
+  return error != std::errc{} || rest != end;
+}
+
 void CsvLine::add_text(std::string_view text) {
   begin_cell();
   const bool quoted = text.find_first_of(",;\t\"#") != std::string_view::npos;
   if (quoted) text_ += '"';
+  if (is_formula(text)) text_ += '\'';
   for (const char c : text) {
     if (c == '"') text_ += '"';
     text_ += c == '\n' || c == '\r' ? ' ' : c;

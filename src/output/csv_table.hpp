@@ -9,10 +9,14 @@
 
 namespace tribofit {
 
+/// Whether a spreadsheet would take a text for a formula: behind any apostrophes it begins with = + - @, and is no
+/// number. In a cell it has one apostrophe more, which says that it is text.
+bool is_formula(std::string_view text);
+
 /// One line of a CSV file, cell by cell. Text is quoted where a reader would see more than one cell or a comment, and
-/// its line breaks become blanks; a number that is not known is an empty cell; truth is 1 and 0. The values of a JSON
-/// object or list are laid out in their order, null as an empty cell: so a table has the numbers of the JSON, under the
-/// names of its header.
+/// its line breaks become blanks; what a spreadsheet would take for a formula is marked as text; a number that is not
+/// known is an empty cell; truth is 1 and 0. The values of a JSON object or list are laid out in their order, null as
+/// an empty cell: so a table has the numbers of the JSON, under the names of its header.
 class CsvLine {
  public:
   /// digits: of numbers; 0: to the last.

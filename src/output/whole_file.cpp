@@ -104,7 +104,10 @@ std::string temporary_name(const std::string& target) {
   const std::filesystem::path path(target);
   const std::string unique =
       own_host() + "-" + std::to_string(::getpid()) + "-" + std::to_string(std::random_device{}());
-  return (path.parent_path() / ("." + path.filename().string() + "." + unique + std::string(kTemporaryEnd))).string();
+  const std::string end = "." + unique + std::string(kTemporaryEnd);
+  constexpr std::size_t kLongest = 255;  // bytes of a name, in every usual file system
+  const std::string begin = "." + path.filename().string().substr(0, kLongest - 1 - std::min(end.size(), kLongest - 1));
+  return (path.parent_path() / (begin + end)).string();
 }
 
 /// Whether a temporary file is of this machine, by its name: a lock says nothing of one that another host writes.

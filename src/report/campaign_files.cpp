@@ -263,7 +263,7 @@ void write_run(const std::string& results, const RunRecord& run, const Identific
 
 CampaignSummary write_summary(const ResultReader& results, const std::string& comparison) {
   const std::filesystem::path folder(results.folder());
-  WholeFile csv((folder / "summary.csv").string()), json((folder / "summary.json").string());
+  WholeFile csv((folder / "summary.csv").string()), json((folder / summary_name).string());
   json.write("{\"tool\": " + line_of(object("name", "tribofit", "version", version)) + ",\n\"runs\": [");
   std::vector<SummaryRow> rows;
   CampaignSummary summary;
@@ -307,7 +307,7 @@ void write_pooled(const std::string& folder, std::span<const RunResult> runs, co
   } else {
     write("shared.csv", shared_csv(pooled, runs));
   }
-  write("pooled.json", text_of(pooled_json(pooled, runs)));
+  write(pooled_name, text_of(pooled_json(pooled, runs)));
 }
 
 std::string comparison_csv(const ComparisonReport& report, std::span<const PooledGroup> groups) {

@@ -13,8 +13,7 @@ namespace tribofit {
 std::string shell_quoted(const std::string& argument) {
   constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=:,+@%";
   if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos) return argument;
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-  if (std::any_of(argument.begin(), argument.end(), is_control)) {  // bash, zsh and ksh read these
+  if (printable(argument) != argument) {  // bash, zsh and ksh read these
     return "$'" + printable(replaced(replaced(argument, "\\", "\\\\"), "'", "\\'")) + "'";
   }
   return "'" + replaced(argument, "'", "'\\''") + "'";

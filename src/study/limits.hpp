@@ -12,6 +12,10 @@ namespace tribofit {
 /// memory prolong it. Shorter: machines near their critical speed count as not sticking.
 inline constexpr double kLongestSlip = 2.5;
 
+/// Damping ratio above which motions are not studied: the block creeps for as many natural periods, by steps as many
+/// times shorter. No dry contact has a hundredth of it. Larger: a study of 10 s takes minutes.
+inline constexpr double kMostDampingRatio = 100;
+
 /// Swings below so many roundings of the displacement are rounding.
 inline constexpr double kRoundings = 256;
 

@@ -250,14 +250,30 @@ std::optional<BlockStart> start_of(const Machine& machine, StartFrom start) {
   return BlockStart{steady_sliding(machine).displacement, kPush * machine.disc_velocity()};
 }
 
+namespace {
+
+/// Refuses machines that cannot be, or that creep to steady sliding for too long, by their damping or by friction that
+/// rises with speed; what cannot be integrated afterwards does not settle.
+void require_machine(const Machine& machine) {
+  const SteadySliding sliding = steady_sliding(machine);
+  const bool creeps = sliding.is_stable() && sliding.eigenvalues.front().imag() == 0;
+  const double ratio = creeps ? machine.rig.natural_frequency() / (-2 * sliding.growth_rate()) : 0;
+  if (ratio <= kMostDampingRatio) return;
+  throw InputError(fmt::format("the block creeps as by a damping ratio of {}; motions are studied up to {}",
+                               general(ratio, 3), general(kMostDampingRatio)),
+                   "give less damping, or friction that rises less with speed");
+}
+
+}  // namespace
+
 Settled settle(const Machine& machine, const SettleOptions& options) {
-  // Refuses machines that cannot be; what cannot be integrated afterwards does not settle.
-  steady_sliding(machine);
+  require_machine(machine);
   if (options.sharpness > 0) smoothed_law(machine.model, machine.parameters, options.sharpness);
   return Settling(machine, options).run();
 }
 
 bool keeps_sticking(const Machine& machine, double sharpness) {
+  require_machine(machine);
   const double period = natural_period(machine), cycle = longest_cycle(machine);
   const bool bare = machine.model.effects().empty();
   const double most = std::max(kCyclesThatStick * cycle, (bare ? 2000 : 500) * period);

@@ -48,10 +48,9 @@ std::vector<std::string> texts(const Json& json, const char* key, std::size_t mo
   return out;
 }
 
-/// The shown unit of a parameter in SI; nothing for a parameter that the model does not have.
-std::optional<double> unit_of(const FrictionModel& model, const std::string& name) {
+std::optional<Parameter> parameter_of(const FrictionModel& model, const std::string& name) {
   for (const FrictionModel::Slot& slot : model.parameters()) {
-    if (slot.full_name() == name) return slot.parameter.si;
+    if (slot.full_name() == name) return slot.parameter;
   }
   return std::nullopt;
 }
@@ -63,15 +62,15 @@ GivenParameter& entry_of(const std::string& name, std::vector<GivenParameter>& g
   return given.back();
 }
 
-/// Starts and bounds of the parameters that the model has; a page keeps those of models that it may come back to.
+/// Starts and bounds of the parameters that the model has.
 std::vector<GivenParameter> given_from(const Json& json, const FrictionModel& model) {
   std::vector<GivenParameter> given;
   const auto each = [&](const char* key, auto&& take) {
     if (!json.contains(key)) return;
     if (!json[key].is_object()) refuse(fmt::format("'{}' is not a set of named values", key), "write {\"mu_s\": 0.5}");
     for (const auto& [name, value] : json[key].items()) {
-      const auto unit = unit_of(model, name);
-      if (unit) take(entry_of(name, given), value, *unit, name);
+      const auto parameter = parameter_of(model, name);  // a page keeps those of models that it may come back to
+      if (parameter) take(entry_of(name, given), value, parameter->si, name);
     }
   };
   each("start", [](GivenParameter& entry, const Json& value, double unit, const std::string& name) {
@@ -107,11 +106,11 @@ Selection selection_from(const Json& json) {
   return selection;
 }
 
-/// The same where another law with these effects may have it.
+/// SI value of the shown unit of a parameter, which another law with these effects may have.
 double unit_in_any_law(const WorkbenchChoice& choice, const std::string& name) {
-  if (const auto unit = unit_of(model_of(choice), name)) return *unit;
+  if (const auto known = parameter_of(model_of(choice), name)) return known->si;
   for (const Law& law : law_catalogue()) {
-    if (const auto unit = unit_of(FrictionModel(law), name)) return *unit;
+    if (const auto known = parameter_of(FrictionModel(law), name)) return known->si;
   }
   return 1;
 }
@@ -207,12 +206,14 @@ std::vector<std::string> arguments_of(const WorkbenchChoice& choice) {
   for (const std::string& formula : choice.formulas) add("--formula", formula);
   const FrictionModel model = model_of(choice);
   for (const GivenParameter& known : choice.given) {
-    const std::optional<double> unit = unit_of(model, known.name);
-    if (!unit) continue;  // of another law: the command would be refused
-    if (known.start) add("--start", fmt::format("{}={}", known.name, in_units(*known.start, *unit)));
+    const std::optional<Parameter> parameter = parameter_of(model, known.name);
+    if (!parameter) continue;  // of another law: the command would be refused
+    const double si = parameter->si;
+    const std::string unit = parameter->unit.substr(parameter->unit.starts_with('1') ? 1 : 0);  // 2 1/s is 2/s
+    if (known.start) add("--start", fmt::format("{}={}{}", known.name, in_units(*known.start, si), unit));
     if (known.bounds) {
-      add("--bounds", fmt::format("{}={}..{}", known.name, in_units(known.bounds->lower, *unit),
-                                  in_units(known.bounds->upper, *unit)));
+      add("--bounds", fmt::format("{}={}..{}{}", known.name, in_units(known.bounds->lower, si),
+                                  in_units(known.bounds->upper, si), unit));
     }
   }
   const Selection& selection = choice.selection;

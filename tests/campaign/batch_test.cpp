@@ -244,6 +244,35 @@ TEST_F(Batch, ResultsOfOtherTracesAndForeignFilesAreNotOverwritten) {
   EXPECT_EQ(shop_.identify("--radius 15mm mine/summary.csv --out mine").status, 2);
 }
 
+/// Whatever the batch calls its own files: runs that are called so have other files.
+TEST_F(Batch, RunsMayBeCalledLikeItsOwnFiles) {
+  ASSERT_EQ(shop_.identify("runs --out res --share alpha --quiet").status, 0);
+  std::filesystem::create_directory(shop_ / "own");
+  std::size_t runs = 0;
+  for (const auto& [name, text] : files_in(shop_ / "res")) {
+    if (name.find('/') != std::string::npos || name[0] == 'a') continue;
+    const std::string run = "own/" + name.substr(0, name.rfind('.')) + ".csv";
+    if (!std::filesystem::exists(shop_ / run)) shop_.write(run, short_trace(static_cast<int>(++runs)));
+  }
+  ASSERT_GE(runs, 5u);  // campaign, summary, pooled, trends, shared
+  for (const char* found : {"0 already there", "0 fitted"}) {
+    const Outcome outcome = shop_.identify("--radius 15mm own --out own-res --share alpha");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr(found));
+  }
+}
+
+TEST_F(Batch, GoesOnWhereItWasMovedTo) {
+  ASSERT_EQ(shop_.identify("runs --out res --quiet").status, 0);
+  EXPECT_EQ(contents(shop_ / "res/campaign.json").find(shop_.path()), std::string::npos);
+  EXPECT_THAT(shop_.shell("mkdir moved; mv runs res moved; cd moved; identify runs --out res").out,
+              HasSubstr("0 fitted, 5 already there"));
+  EXPECT_THAT(shop_.shell("mkdir -p there; mv moved/runs there/traces; identify there/traces --out moved/res").out,
+              HasSubstr("0 fitted, 5 already there"));
+  EXPECT_THAT(shop_.shell("rm moved/res/a3.json; identify merge moved/res").out,
+              HasSubstr("identify there/traces/ --out moved/res/"));
+}
+
 TEST_F(Batch, WhatIsAskedBeyondTheSummaryDoesNotTakeItAway) {
   shop_.write("earlier.csv", "radius_mm,mu_s\n15,1e400\n");
   const Outcome share = shop_.identify("runs --out a --share alhpa --quiet");

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -120,6 +121,50 @@ TEST_F(DraftTest, IsAManifestThatItsReaderUnderstands) {
   ASSERT_EQ(manifest.rows.size(), 3u);
   EXPECT_DOUBLE_EQ(manifest.rows[0].conditions.radius.value, 0.009);
   EXPECT_EQ(manifest.rows[2].repeat, 2);
+}
+
+/// What a line, a spreadsheet or a screen would not keep is written so that the file is found all the same.
+TEST_F(DraftTest, KeepsAnyNameThatAFileCanHave) {
+  const std::vector<std::string> names = {
+      "=1+2.csv",      "@SUM(1).csv",        "-1.csv",        "+a.csv",     "'=b.csv",           "#c.csv",
+      " d.csv",        "e\nf.csv",           "g\th.csv",      "i\"j\".csv", "k,l;m.csv",         "n*[o].csv",
+      "p[q]\n\\r.csv", "s\xe2\x80\xaet.csv", "\xc3\xa4u.csv", "v\xe4w.csv", "x\xe2\x80\x8b.csv", "'y'.csv"};
+  std::filesystem::create_directory(shop_ / "any");
+  for (const std::string& name : names) shop_.write("any/" + name, short_trace(1));
+  ASSERT_EQ(shop_.identify("manifest any --out any/manifest.csv").status, 0);
+  EXPECT_THAT(contents(shop_ / "any/manifest.csv"),
+              ::testing::AllOf(HasSubstr("\n'=1+2.csv,"), HasSubstr("\n'-1.csv,")));
+  const Manifest manifest = read_manifest((shop_ / "any").string());
+  std::set<std::string> found;
+  for (const ManifestRow& row : manifest.rows) found.insert(std::filesystem::path(row.path).filename().string());
+  EXPECT_EQ(found, std::set<std::string>(names.begin(), names.end()));
+  const Outcome printed =
+      shop_.shell("identify manifest any > printed; rm any/manifest.csv; mv printed any/manifest.csv");
+  EXPECT_EQ(read_manifest((shop_ / "any").string()).rows.size(), names.size()) << printed.err;
+}
+
+/// 255 bytes are the most of every usual file system; what is written beside them has no longer name.
+TEST_F(DraftTest, NamesMayBeAsLongAsAFileSystemHasThem) {
+  std::filesystem::create_directory(shop_ / "long");
+  const std::string much(246, 'n');
+  for (const char* end : {"1.csv", "2.csv"}) shop_.write("long/" + much + end, short_trace(1));
+  for (const char* found : {"2 fitted", "2 already there"}) {
+    const Outcome outcome = shop_.identify("--radius 15mm --out res long");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr(found));
+  }
+  const Outcome one = shop_.identify("--radius 15mm --json " + much + "9.json long/" + much + "1.csv");
+  EXPECT_EQ(one.status, 0) << one.err;
+  EXPECT_TRUE(std::filesystem::exists(shop_ / (much + "9.json")));
+}
+
+TEST_F(DraftTest, SpreadsheetsReadNamesAsText) {
+  std::filesystem::create_directory(shop_ / "cells");
+  for (const char* name : {"=cmd.csv", "-2.csv", "7.csv"}) shop_.write(std::string("cells/") + name, short_trace(1));
+  ASSERT_EQ(shop_.identify("--radius 15mm --quiet --out res cells").status, 0);
+  const std::string summary = contents(shop_ / "res/summary.csv");
+  EXPECT_THAT(summary, ::testing::AllOf(HasSubstr("\n'=cmd,'=cmd.csv,ok,"), HasSubstr("\n-2,'-2.csv,ok,"),
+                                        HasSubstr("\n7,7.csv,ok,")));
 }
 
 TEST_F(DraftTest, NeverOverwritesWithoutForce) {

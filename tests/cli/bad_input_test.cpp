@@ -134,7 +134,6 @@ INSTANTIATE_TEST_SUITE_P(
         Value{"Zero", "--radius 0mm", {"--radius", "not greater than zero"}},
         Value{"Negative", "--radius -15mm", {"--radius", "not greater than zero"}},
         Value{"NoNumber", "--radius big", {"--radius", "not a number"}},
-        Value{"ForgottenUnit", "--radius 15", {"--radius", "more than 10 m", "15mm"}},
         Value{"OneOfTheSteps", "--radius 6mm,-9mm", {"--radius", "'-9mm'"}},
         Value{"NegativeLoad", "--radius 15mm --load -5N", {"--load", "not greater than zero"}},
         Value{"SpeedAsLength", "--radius 15mm --speed 4mm", {"--speed", "angular velocity", "rpm"}},

@@ -95,14 +95,6 @@ TEST(Options, ALinearSpeedIsThatAtTheRadius) {
   }
 }
 
-TEST(Options, ASpeedNeedsItsUnit) {
-  const Workshop shop;
-  shop.write("trace.csv", good_trace());
-  const Outcome refused = shop.identify("--radius 15mm --speed 4 trace.csv");
-  EXPECT_EQ(refused.status, 3);
-  EXPECT_THAT(refused.err, AllOf(HasSubstr("--speed: '4' has no unit"), HasSubstr("4rpm")));
-}
-
 TEST(Options, UnitsAreOfAChannelOrOfAColumn) {
   const Workshop shop;
   shop.write("trace.csv", with_header("time_s,mu,Velocity"));

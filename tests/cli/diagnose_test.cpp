@@ -24,7 +24,7 @@ const std::string& empty_trace() {
   return text;
 }
 const std::string& viscous_trace() {
-  static const std::string text = trace("--speed 4rpm --effect viscous:sigma=0.0015", 4);
+  static const std::string text = trace("--speed 4rpm --effect viscous:sigma=0.0015s/mm", 4);
   return text;
 }
 
@@ -141,8 +141,8 @@ TEST(Diagnose, AFolderWithAManifestIsDiagnosedTogetherAndRepeatsConfirm) {
   const Workshop shop;
   std::filesystem::create_directory(shop / "runs");
   shop.write("runs/a1.csv", viscous_trace());
-  shop.write("runs/a2.csv", trace("--speed 4rpm --effect viscous:sigma=0.0015", 7));
-  shop.write("runs/b1.csv", trace("--speed 8rpm --effect viscous:sigma=0.0015", 5));
+  shop.write("runs/a2.csv", trace("--speed 4rpm --effect viscous:sigma=0.0015s/mm", 7));
+  shop.write("runs/b1.csv", trace("--speed 8rpm --effect viscous:sigma=0.0015s/mm", 5));
   shop.write("runs/manifest.csv", "file,radius [mm],speed_rpm,load,repeat\na*.csv,15,4,50N,\nb1.csv,15,8,50N,1\n");
   const json j = result_of(shop, "runs");
   ASSERT_EQ(j["traces"].size(), 2u);
@@ -299,7 +299,7 @@ TEST(Diagnose, OneUnusableRecordDoesNotStopTheOthers) {
   const Workshop shop;
   std::filesystem::create_directory(shop / "runs");
   shop.write("runs/a.csv", viscous_trace());
-  shop.write("runs/b.csv", trace("--speed 4rpm --effect viscous:sigma=0.0015", 5));
+  shop.write("runs/b.csv", trace("--speed 4rpm --effect viscous:sigma=0.0015s/mm", 5));
   const json alone = result_of(shop, "--radius 15mm --speed 4rpm runs");
   shop.write("runs/broken.csv", "time_s,mu,v_b_mm_s\n0,abc,1\n");
   std::string still = "time_s,mu,v_b_mm_s\n";

@@ -64,6 +64,10 @@ TEST(HostileInput, NamesAreShownAndNotObeyed) {
               AllOf(Not(HasSubstr("\x1b")), HasSubstr("a\\x1b[31m\\nb.csv"), HasSubstr("$'a\\x1b[31m\\nb.csv'")));
   outcome = shop.shell("identify --radius 15mm \"$(printf 'missing\\033[31m\\nb.csv')\"");
   EXPECT_THAT(outcome.err, AllOf(Not(HasSubstr("\x1b")), HasSubstr("missing\\x1b[31m\\nb.csv: cannot be opened")));
+  shop.write("a\xe2\x80\xaevsc.b\xe2\x80\x8b.csv", good_trace());  // reads a.b.csv backwards, and as shorter than it is
+  outcome = shop.shell("identify --radius 15mm *vsc*.csv");
+  EXPECT_THAT(outcome.out, AllOf(Not(HasSubstr("\xe2\x80\xae")), Not(HasSubstr("\xe2\x80\x8b")),
+                                 HasSubstr("a\\u202evsc.b\\u200b.csv")));
   shop.write("c.csv", "time_s,mu,v\x1b[2J_mm_s" + good_trace().substr(good_trace().find('\n')));
   outcome = shop.identify("columns c.csv");
   EXPECT_THAT(outcome.out, Not(HasSubstr("\x1b")));
@@ -117,6 +121,9 @@ TEST(AbsurdMachine, IsNotStudied) {
            {"speed --range 1mm/s..1e300mm/s", "--range: '1e300mm/s' is more"},
            {"map --x mass=1kg..1e300kg:3 --y stiffness", "--x: '1e300kg' is more"},
            {"map --x mu_s=-5..5:3 --y stiffness", "mu_s = -5:"},
+           {"speed --damping-ratio 1e3", "motions are studied up to 100"},
+           {"sensitivity --mu-k 9 --stiffness 1N/mm", "motions are studied up to 100"},
+           {"map --x mass --y ratio=1..1e3:3 --damping 1e5Ns/m", "motions are studied up to 100"},
            {"speed --sharpness 1e-300s/mm", "--sharpness: '1e-300s/mm' is less"}}) {
     const Outcome outcome = shop.shell(within_ten_seconds("study " + arguments));
     EXPECT_EQ(outcome.status, 3) << arguments << outcome.err;

@@ -154,7 +154,7 @@ TEST(StudyCommand, MachinesAndAxesThatCannotBeAreNamed) {
   refused("study speed --mass -1kg", 3, "the mass of the block is not positive");
   refused("study speed --stiffness 0N/mm", 3, "the stiffness is not positive");
   refused("study speed --speed -4rpm", 3, "the disc does not turn forwards");
-  refused("study speed --damping 1 --damping-ratio 0.1", 2, "exclude each other");
+  refused("study speed --damping 1Ns/m --damping-ratio 0.1", 2, "exclude each other");
   refused("study speed --range 5mm/s..1mm/s", 3, "does not rise");
   refused("study map --x stifness --y mass", 3, "did you mean 'stiffness'");
   refused("study map --x mass --y mass", 3, "both axes");

@@ -106,6 +106,45 @@ TEST(Usage, SomeFormatsOfFiguresNeedLibrsvg) {
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("librsvg"), HasSubstr("--format svg")));
 }
 
+/// It would be millimetres in one verb and metres in another: none takes it, and the unit that was meant is named.
+TEST(Usage, ABareNumberIsRefusedByEveryVerb) {
+  const Workshop shop;
+  shop.write("a.csv", good_trace());
+  for (const auto& [arguments, says] : std::vector<std::pair<std::string, std::string>>{
+           {"--radius 15 a.csv", "--radius: '15' has no unit; write 15mm or 15m"},
+           {"--radius 6mm,9 a.csv", "--radius: '9' has no unit; write 9mm"},
+           {"--radius 15mm --speed 4 a.csv", "--speed: '4' has no unit; write 4rpm or 4rad/s"},
+           {"diagnose --radius 15mm --load 50 a.csv", "--load: '50' has no unit; write 50N"},
+           {"rig --radius 15mm --rate 5000 a.csv", "--rate: '5000' has no unit; write 5000kHz or 5000Hz"},
+           {"--kind spring-slider --stiffness 168N/m --mass 30.7 a.csv", "--mass: '30.7' has no unit; write 30.7kg"},
+           {"diagnose --time-limit 10 a.csv", "--time-limit: '10' has no unit; write 10s or 10ms"},
+           {"plan --radius 15mm --speeds 8 a.csv", "--speeds: '8' has no unit; write 8rpm"},
+           {"plan --radius 15mm --springs 5 a.csv", "--springs: '5' has no unit; write 5N/mm"},
+           {"explore --radius 15 a.csv", "--radius: '15' has no unit; write 15mm"},
+           {"twin --radius 15 a.csv", "--radius: '15' has no unit; write 15mm"},
+           {"simulate --radius 15 --out b.csv", "--radius: '15' has no unit; write 15mm"},
+           {"simulate --speed 4 --out b.csv", "--speed: '4' has no unit; write 4rpm"},
+           {"simulate --mass 1 --out b.csv", "--mass: '1' has no unit; write 1kg"},
+           {"simulate --stiffness 16 --out b.csv", "--stiffness: '16' has no unit; write 16N/mm"},
+           {"simulate --alpha 0.05 --out b.csv", "--alpha: '0.05' has no unit; write 0.05s/mm"},
+           {"simulate --noise-v 0.02 --out b.csv", "--noise-v: '0.02' has no unit; write 0.02mm/s"},
+           {"simulate --drift 1e-5 --out b.csv", "--drift: '1e-5' has no unit; write 1e-5 1/s"},
+           {"simulate --temperature 20..0 --out b.csv", "--temperature: '20' has no unit; write 20degC"},
+           {"simulate --effect runout:A=0.05,phase=1 --out b.csv", "runout:phase: '1' has no unit; write 1deg or 1rad"},
+           {"study phase --radius 15", "--radius: '15' has no unit; write 15mm"},
+           {"study speed --range 1..20", "--range: '1' has no unit"},
+           {"study phase --at 6", "--at: '6' has no unit"},
+           {"study map --x stiffness=8..20:3 --y mass", "--x: '8' has no unit; write 8N/mm"},
+           {"--start alpha=0.05 a.csv", "alpha: '0.05' has no unit; write 0.05s/mm"},
+           {"--exclude 1..2 a.csv", "--exclude: '1' has no unit; write 1s"}}) {
+    const Outcome outcome = shop.identify(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr(says)) << arguments;
+  }
+  EXPECT_EQ(shop.identify("simulate --duration 1s --rate 1kHz --delay 0 --force-bandwidth 0 --out b.csv").status, 0)
+      << "nothing is nothing in any unit";
+}
+
 TEST(Usage, HelpAndVersionAreNoErrors) {
   const Workshop shop;
   for (const char* words : {"--help", "diagnose --help", "--version"}) {

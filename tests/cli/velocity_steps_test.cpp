@@ -177,7 +177,8 @@ TEST(VelocitySteps, WhatCannotBeDoneIsSaid) {
   }
   EXPECT_EQ(shop.identify("--kind sliding --speed 0s:2um/s,9s:3um/s steps.csv").status, 2);
   const Outcome unused = shop.identify("--loss huber --law coulomb --cycles 0..3 --starts 9 steps.csv");
-  EXPECT_THAT(unused.out + unused.err, HasSubstr("by rate and state, without --law"));
+  EXPECT_EQ(unused.status, 2);
+  EXPECT_THAT(unused.err, HasSubstr("means nothing for a record of the kind velocity-steps"));
   const Outcome early = shop.identify("--to 50s steps.csv");
   EXPECT_EQ(early.status, 1);
   EXPECT_THAT(early.err, HasSubstr("no step"));

@@ -126,7 +126,7 @@ def written(identify, repository):
             "--noise-mu 0.0002 --out driven.csv")
         result("driven", "driven.csv")
         result("hidden", "diagnose --radius 15mm --load 50N hidden.csv --confirm held.csv")
-        run(f"simulate --radius 15mm --duration 6s --seed 1 --effect frictional-lag:tau=0.5 --noise-mu 0.006 "
+        run(f"simulate --radius 15mm --duration 6s --seed 1 --effect frictional-lag:tau=0.5ms --noise-mu 0.006 "
             "--noise-v 0.02mm/s --scatter 0.008 --rate 4kHz --quiet --out open.csv")
         result("plan", "plan --radius 15mm --load 50N --tap --lift --rates 50kHz --pauses 1s --minutes 0.1 open.csv")
         result("both", "diagnose --radius 15mm --load 50N hidden.csv again.csv")

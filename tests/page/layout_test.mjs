@@ -23,7 +23,7 @@ function makePages() {
     pages.push(`${name}.html`);
   };
   const pages = [], record = ["--radius", "15mm", "--load", "50N", "hidden.csv"];
-  simulate("hidden.csv", "15mm", "--duration", "32s", "--effect", "runout:A=0.05,phase=1", "--seed", "7");
+  simulate("hidden.csv", "15mm", "--duration", "32s", "--effect", "runout:A=0.05,phase=1rad", "--seed", "7");
   page("diagnosis", "diagnose", ...record);
   page("speed", "study", "speed", "--radius", "15mm", "--points", "12");
   if (few) return pages;
@@ -40,7 +40,7 @@ function makePages() {
     }
   }
   run("simulate", "--radius", "15mm", "--duration", "12s", "--rate", "2kHz", "--noise-mu", "0.006", "--noise-v", "0.1mm/s",
-    "--scatter", "0.004", "--effect", "frictional-lag:tau=0.4", "--quiet", "--out", "lag.csv");
+    "--scatter", "0.004", "--effect", "frictional-lag:tau=0.4ms", "--quiet", "--out", "lag.csv");
   page("plan", "plan", "--radius", "15mm", "--load", "50N", "--tap", "--speeds", "1rpm,8rpm", "lag.csv");
   run("simulate", "--kind", "velocity-steps", "--rate", "50Hz", "--duration", "140s", "--speed-steps",
     "0s:2um/s,20s:10um/s,50s:2um/s,90s:10um/s", "--rate-state", "a=0.01,b=0.015,D_c=8um,k=0.004/um,mu_0=0.6",

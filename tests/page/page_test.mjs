@@ -16,7 +16,7 @@ function makePages() {
   copyFileSync(example, join(folder, hostileName));
   run("--radius", "15mm", "--quiet", "--report", "trace.html", hostileName);
   run("simulate", "--radius", "15mm", "--speed", "4rpm", "--duration", "32s", "--rate", "2kHz", "--effect",
-    "runout:A=0.05,phase=1", "--noise-mu", "0.003", "--noise-v", "0.02mm/s", "--seed", "7", "--out", "runout.csv");
+    "runout:A=0.05,phase=1rad", "--noise-mu", "0.003", "--noise-v", "0.02mm/s", "--seed", "7", "--out", "runout.csv");
   run("diagnose", "--radius", "15mm", "--speed", "4rpm", "--quiet", "--report", "diagnosis.html", "runout.csv");
 }
 

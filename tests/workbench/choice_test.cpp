@@ -26,7 +26,7 @@ TEST(Choice, is_read_in_the_units_people_see) {
           "bounds":{"mu_s":[0.4,0.6]},"cycles":[3,40],"excluded":[[2.5,3.1]]})",
       "the request"));
   EXPECT_THAT(arguments_of(choice), ElementsAre("--law", "exponential", "--effect", "frictional-lag", "--start",
-                                                "alpha=0.05", "--start", "frictional-lag.tau=2", "--bounds",
+                                                "alpha=0.05s/mm", "--start", "frictional-lag.tau=2ms", "--bounds",
                                                 "mu_s=0.4..0.6", "--cycles", "3..40", "--exclude", "2.5s..3.1s"));
   EXPECT_DOUBLE_EQ(*choice.given[0].start, 50);    // s/m
   EXPECT_DOUBLE_EQ(*choice.given[1].start, 2e-3);  // s

@@ -92,7 +92,7 @@ TEST(CommandLine, refuses_what_it_cannot_mean) {
   EXPECT_THAT(refused("--start tau=2ms"), HasSubstr("no parameter 'tau'"));
   EXPECT_THAT(refused("--start alpha=2mm"), HasSubstr("'2mm' is a length, not an inverse velocity"));
   EXPECT_THAT(refused("--start alpha"), HasSubstr("NAME=VALUE"));
-  EXPECT_THAT(refused("--bounds alpha=0.2..0.1"), HasSubstr("from high to low"));
+  EXPECT_THAT(refused("--bounds alpha=0.2..0.1s/mm"), HasSubstr("from high to low"));
   EXPECT_THAT(refused("--bounds alpha=0.2"), HasSubstr("not a range; write it as alpha="));
   EXPECT_THAT(refused("--start mu_s=0.9 --bounds mu_s=0.1..0.2"), HasSubstr("beyond"));
   EXPECT_THAT(refused("--cycles 5"), HasSubstr("not a range; write it as 3..40"));

@@ -79,6 +79,9 @@ std::string settings_hash(const Run& run, const std::string& hash_of_options);
 /// Any number of batches may work on one folder at once. Cost: linear in bytes of traces.
 BatchOutcome run_batch(const Campaign& campaign, const BatchOptions& options, const BatchHooks& hooks);
 
+/// The way from the folder of results to that of the traces; empty where these were named one by one.
+std::string folder_beside_results(const std::string& folder, const std::string& results);
+
 /// campaign.json: the runs in order, each with the hash of its settings, the folder they lie in, and the rows of the
 /// manifest that are no runs. Every shard of a campaign writes the same.
 std::string campaign_json(const Campaign& campaign, const BatchOptions& options);

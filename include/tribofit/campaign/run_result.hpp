@@ -114,14 +114,16 @@ std::string sealed(std::string_view json);
 /// Whether a text is one that sealed() made, to the last byte.
 bool is_whole(std::string_view text);
 
-/// What a campaign is made of, in the folder of its results.
-inline constexpr const char* campaign_name = "campaign.json";
+/// What a campaign is made of, what its runs are and what they say together, in the folder of its results.
+inline constexpr const char *campaign_name = "campaign.json", *summary_name = "summary.json",
+                            *pooled_name = "pooled.json";
+/// All of the campaign's own that end as the results of runs do: no run is called like one of them.
+inline constexpr std::array campaign_files = {campaign_name, summary_name, pooled_name};
 /// Beside the results, what figures and fits of all runs together take of the samples: many numbers that few ask for,
 /// in files of their own, with the hash of the run's settings.
 inline constexpr const char* kept_folder = "kept";
 
-/// The folder of traces that a folder of results belongs to (empty: named one by one); nothing where campaign.json is
-/// missing or damaged. Never throws.
+/// CampaignPlan::folder of a folder of results; nothing where campaign.json is missing or damaged. Never throws.
 std::optional<std::string> folder_of_campaign(const std::string& results);
 
 /// Reads the record of one result file; nothing where the file is missing, damaged or of another make. Never
@@ -135,7 +137,7 @@ struct PlannedRun {
 
 /// campaign.json: what was planned.
 struct CampaignPlan {
-  std::string folder;  ///< of the traces; empty where they were named one by one
+  std::string folder;  ///< of the traces, seen from that of the results: both may move; empty: named one by one
   std::vector<PlannedRun> runs;
   std::vector<std::string> problems;  ///< rows of the manifest that name no run of their own
 };

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,6 +34,8 @@ struct IdentifyOptions {
   bool published_protocol = true;  ///< fit by per-cycle extremes too, beside the joint fit
   Selection selection;             ///< what part of the record is fitted
   RateStateOptions rate_state;     ///< of velocity steps and holds
+  /// Called with the kind of a record once it is known; throws where what is asked means nothing for it.
+  std::function<void(RecordKind)> check_kind;
 };
 
 /// One input file with what is known of it beforehand (a manifest's row over the command line).
