@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "limits.hpp"
+#include "rest_readings.hpp"
 #include "static_responses.hpp"
-#include "statistics/linear_algebra.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
@@ -27,181 +27,6 @@ struct Term {
   Kind kind;
   double shape = 0;
   MatrixXd columns = {};
-};
-
-/// The middles of the sticks, each in pieces: row by row one piece.
-struct Readings {
-  struct Stick {
-    Index begin, size;
-    double duration;  // [s]
-  };
-  std::vector<Stick> sticks;
-  std::vector<std::pair<std::size_t, std::size_t>> pieces;  // in blocks
-  VectorXd velocity, time;
-  double scale = 0;  // |v_b| as read
-
-  VectorXd means(std::span<const double> blocks) const {
-    VectorXd out(static_cast<Index>(pieces.size()));
-    for (std::size_t k = 0; k < pieces.size(); ++k)
-      out(static_cast<Index>(k)) = mean_of(blocks.subspan(pieces[k].first, pieces[k].second - pieces[k].first));
-    return out;
-  }
-};
-
-Readings readings_of(const PlateauSearch& search, std::vector<StickPlateau> runs) {
-  std::vector<double> sizes;
-  for (const StickPlateau& run : runs) sizes.push_back(static_cast<double>(run.size()));
-  const double least = kShortestPlateau * median(std::move(sizes));
-  std::vector<double> velocity = search.blocks.mean, time(velocity.size());
-  for (std::size_t b = 0; b < time.size(); ++b) {
-    time[b] = (static_cast<double>(b) + 0.5) * search.blocks.step;
-    if (!search.disc.mean.empty()) velocity[b] -= search.disc.mean[b];
-  }
-  Readings readings;
-  for (const StickPlateau& run : runs) {
-    const std::size_t size = run.inner_end() - run.inner_begin(), count = std::min(size, kMostPieces);
-    if (static_cast<double>(run.size()) < least || count < 3) continue;
-    readings.sticks.push_back({static_cast<Index>(readings.pieces.size()), static_cast<Index>(count),
-                               static_cast<double>(run.size()) * search.blocks.step});
-    for (std::size_t k = 0; k < count; ++k)
-      readings.pieces.emplace_back(run.inner_begin() + k * size / count, run.inner_begin() + (k + 1) * size / count);
-  }
-  if (readings.sticks.empty()) return readings;
-  readings.velocity = readings.means(velocity);
-  readings.scale = readings.means(search.blocks.mean).cwiseAbs().mean();
-  readings.time = readings.means(time);
-  return readings;
-}
-
-/// Means of a stick are its level, which wanders from stick to stick: they weigh by the part of their variance that is
-/// noise (random effects, the transformation of Fuller and Battese 1974). used: sticks that take part.
-struct Weighting {
-  std::vector<double> of_mean;
-  std::vector<bool> used;
-};
-
-struct LinearFit {
-  VectorXd x;
-  MatrixXd covariance;  // from stick to stick
-  double left = HUGE_VAL;
-};
-
-LinearFit fit(const Readings& readings, const MatrixXd& design, const Weighting& weighting, bool with_errors) {
-  const Index n = design.cols();
-  MatrixXd rows(design.rows(), n + 1);
-  rows << design, readings.velocity;
-  MatrixXd normal = MatrixXd::Zero(n + 1, n + 1);
-  for (std::size_t k = 0; k < readings.sticks.size(); ++k) {
-    auto part = rows.middleRows(readings.sticks[k].begin, readings.sticks[k].size);
-    if (!weighting.used[k]) continue;
-    part.rowwise() -= (weighting.of_mean[k] * part.colwise().mean()).eval();
-    normal += part.transpose() * part;
-  }
-  LinearFit out;
-  const VectorXd scale = normal.diagonal().cwiseSqrt();
-  if (!(scale.head(n).minCoeff() > 0)) return out;
-  const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * normal * scale.cwiseInverse().asDiagonal();
-  const SymmetricSystem solved = solve_symmetric_system(scaled.topLeftCorner(n, n), scaled.col(n).head(n));
-  if (!(solved.reciprocal_condition >= kFittable)) return out;
-  const VectorXd back = scale.head(n).cwiseInverse();
-  out.x = scale(n) * back.cwiseProduct(solved.x);
-  out.left = normal(n, n) * (1 - scaled.col(n).head(n).dot(solved.x));
-  if (!with_errors) return out;
-  MatrixXd scores = MatrixXd::Zero(n, n);
-  double sticks = 0;
-  for (std::size_t k = 0; k < readings.sticks.size(); ++k) {
-    const auto part = rows.middleRows(readings.sticks[k].begin, readings.sticks[k].size);
-    if (!weighting.used[k]) continue;
-    const VectorXd score = part.leftCols(n).transpose() * (part.col(n) - part.leftCols(n) * out.x);
-    scores += score * score.transpose(), sticks += 1;
-  }
-  const MatrixXd inverse = back.asDiagonal() * solved.inverse * back.asDiagonal();
-  out.covariance = sticks / std::max(1.0, sticks - static_cast<double>(n)) * inverse * scores * inverse;
-  return out;
-}
-
-/// From what a model leaves: how much the levels of sticks wander, and which of them are far off.
-Weighting weighting_of(const Readings& readings, const VectorXd& residuals) {
-  double within = 0, freedom = 0;
-  std::vector<double> levels, off;
-  for (const Readings::Stick& stick : readings.sticks) {
-    const auto part = residuals.segment(stick.begin, stick.size);
-    levels.push_back(part.mean());
-    within += (part.array() - part.mean()).square().sum(), freedom += static_cast<double>(stick.size) - 1;
-  }
-  const double centre = median(levels);
-  for (const double level : levels) off.push_back(std::abs(level - centre));
-  const double spread = kSigmaPerMad * median(off), rounding = kRoundingOfLevel * readings.scale;
-  const double limit = std::max(kFarLevel * spread, rounding);
-  Weighting out;
-  within = std::max(within / freedom, rounding * rounding);
-  for (std::size_t k = 0; k < levels.size(); ++k) {
-    const double size = static_cast<double>(readings.sticks[k].size);
-    const double level = std::max(0.0, spread * spread - within / size);
-    out.of_mean.push_back(level > 0 ? 1 - std::sqrt(within / (within + size * level)) : 0);
-    out.used.push_back(off[k] <= limit);
-  }
-  if (static_cast<double>(std::count(out.used.begin(), out.used.end(), true)) <
-      kLevelsKept * static_cast<double>(out.used.size()))
-    out.used.assign(out.used.size(), true);
-  return out;
-}
-
-/// A model of some terms, and the fit of one more.
-class Model {
- public:
-  explicit Model(const Readings& readings) : readings_(readings), design_(readings.velocity.size(), 2) {
-    const double middle = readings.time.mean(), half = 0.5 * (readings.time.maxCoeff() - readings.time.minCoeff());
-    design_ << VectorXd::Ones(design_.rows()), (readings.time.array() - middle) / half;
-    settle();
-  }
-  void add(const Term& term) {
-    design_.conservativeResize(Eigen::NoChange, design_.cols() + term.columns.cols());
-    design_.rightCols(term.columns.cols()) = term.columns;
-    settle();
-  }
-  LinearFit with(const MatrixXd& columns, bool with_errors) const {
-    MatrixXd design(design_.rows(), design_.cols() + columns.cols());
-    design << design_, columns;
-    return fit(readings_, design, weighting_, with_errors);
-  }
-  /// The same in the first half of the sticks, or the second, the rest of the model as in the whole.
-  LinearFit in_half(const MatrixXd& columns, const LinearFit& whole, bool second) const {
-    Readings left = readings_;
-    left.velocity -= design_ * whole.x.head(design_.cols());
-    Weighting half = weighting_;
-    for (std::size_t k = 0; k < half.used.size(); ++k)
-      half.used[k] = half.used[k] && (2 * k >= half.used.size()) == second;
-    MatrixXd design(design_.rows(), 1 + columns.cols());
-    design << VectorXd::Ones(design_.rows()), columns;
-    return fit(left, design, half, false);
-  }
-  const LinearFit& settled() const { return fit_; }
-  const MatrixXd& design() const { return design_; }
-  /// Other columns in the place of those from `at` on, nothing else changed.
-  void replace(Index at, const MatrixXd& columns) {
-    design_.middleCols(at, columns.cols()) = columns;
-    fit_ = fit(readings_, design_, weighting_, true);
-  }
-  std::size_t sticks() const {
-    return static_cast<std::size_t>(std::count(weighting_.used.begin(), weighting_.used.end(), true));
-  }
-
- private:
-  void settle() {
-    constexpr int kRounds = 4;
-    weighting_ = {std::vector<double>(readings_.sticks.size(), 0.0), std::vector<bool>(readings_.sticks.size(), true)};
-    for (int round = 0; round < kRounds; ++round) {
-      fit_ = fit(readings_, design_, weighting_, true);
-      if (fit_.x.size() == 0) return;
-      weighting_ = weighting_of(readings_, readings_.velocity - design_ * fit_.x);
-    }
-  }
-
-  const Readings& readings_;
-  MatrixXd design_;
-  Weighting weighting_;
-  LinearFit fit_;
 };
 
 /// Where a disc that has turned by theta is on its orbit: a speed 1 + a cos(u), u = n theta + phase, is that of the
@@ -244,14 +69,14 @@ DiscRipple ripple_of(const LinearFit& found, Index at, double level, int order) 
 }
 
 /// All terms that are asked for, with all shapes that are tried.
-std::vector<Term> terms_of(const Trace& trace, const PlateauSearch& search, const Readings& readings,
+std::vector<Term> terms_of(const Trace& trace, const PlateauSearch& search, const RestReadings& readings,
                            const RestTerms& asked) {
   std::vector<Term> terms;
   const std::size_t length = search.blocks.length;
   const double step = search.blocks.step;
   const std::vector<double> friction = block_means(trace.friction, length, step).mean;
   std::vector<double> durations;
-  for (const Readings::Stick& stick : readings.sticks) durations.push_back(stick.duration);
+  for (const RestReadings::Stick& stick : readings.sticks) durations.push_back(stick.duration);
   const double stick = median(std::move(durations));
   const VectorXd mu = readings.means(friction);
   if (asked.high_pass) {
@@ -275,7 +100,7 @@ std::vector<Term> terms_of(const Trace& trace, const PlateauSearch& search, cons
   }
   for (const double above : kStaticOverHighest) {
     VectorXd creep(mu.size());
-    for (const Readings::Stick& one : readings.sticks) {
+    for (const RestReadings::Stick& one : readings.sticks) {
       const ArrayXd here = mu.segment(one.begin, one.size).array().abs();
       creep.segment(one.begin, one.size) = -1 / (1 - here / (above * here.maxCoeff()));
     }
@@ -292,7 +117,7 @@ std::vector<Term> terms_of(const Trace& trace, const PlateauSearch& search, cons
 }
 
 /// By how much a term moves the readings, over their level.
-double size_of(const Readings& readings, const Term& term, const LinearFit& found) {
+double size_of(const RestReadings& readings, const Term& term, const LinearFit& found) {
   const auto value = found.x.tail(term.columns.cols());
   const ArrayXd moved = (term.columns * value).array();
   return (term.kind == Kind::ripple  ? value.norm()
@@ -302,11 +127,13 @@ double size_of(const Readings& readings, const Term& term, const LinearFit& foun
 }
 
 /// Large beside its error and enough to matter, and the same in both halves.
-bool is_there(const Model& model, const Readings& readings, const Term& term, const LinearFit& found, double creep) {
+bool is_there(const RestRegression& model, const RestReadings& readings, const Term& term, const LinearFit& found,
+              double creep) {
   const Index m = term.columns.cols();
   const VectorXd value = found.x.tail(m);
   const double falls = readings.velocity.mean() > 0 ? 1 : -1;  // towards zero
   if (term.kind == Kind::creep && falls * value(0) < 0) return false;
+  if (term.kind == Kind::drive && falls * value(0) > 0) return false;
   if (term.kind == Kind::high_pass && value(0) > 0) return false;
   const VectorXd along = value / value.norm();
   const double error = std::sqrt(along.dot(found.covariance.bottomRightCorner(m, m) * along));
@@ -328,7 +155,7 @@ struct Candidate {
 };
 
 /// The term of a kind that leaves least.
-Candidate best_of(const Model& model, const std::vector<Term>& terms, Kind kind) {
+Candidate best_of(const RestRegression& model, const std::vector<Term>& terms, Kind kind) {
   Candidate best;
   for (const Term& term : terms) {
     if (term.kind != kind) continue;
@@ -352,14 +179,14 @@ double odds_of_motion(const Trace& trace, const PlateauSearch& search) {
 }
 
 /// The same of one explanation against another, from what they leave.
-double odds_of(const Readings& readings, double left, double left_by_other) {
+double odds_of(const RestReadings& readings, double left, double left_by_other) {
   return 0.5 * static_cast<double>(readings.velocity.size()) * std::log(left_by_other / left);
 }
 
 /// Squares of what rises in a straight line in each stick, about that line.
-double noise_of(const Readings& readings, const VectorXd& rising) {
+double noise_of(const RestReadings& readings, const VectorXd& rising) {
   double squares = 0;
-  for (const Readings::Stick& stick : readings.sticks) {
+  for (const RestReadings::Stick& stick : readings.sticks) {
     const std::span<const double> part(rising.data() + stick.begin, static_cast<std::size_t>(stick.size));
     const StraightLine line = fit_line(part);
     for (std::size_t k = 0; k < part.size(); ++k) squares += std::pow(part[k] - line.at(static_cast<double>(k)), 2);
@@ -368,9 +195,9 @@ double noise_of(const Readings& readings, const VectorXd& rising) {
 }
 
 /// Leaves of the terms that look alike in stick those that explain the record.
-void distinguish(const Trace& trace, const PlateauSearch& search, const Readings& readings, const Estimate& mean,
+void distinguish(const Trace& trace, const PlateauSearch& search, const RestReadings& readings, const Estimate& mean,
                  std::vector<Term>& terms) {
-  const Model base(readings);
+  const RestRegression base(readings);
   const double moves = odds_of_motion(trace, search);
   const Candidate cross = best_of(base, terms, Kind::crosstalk), sag = best_of(base, terms, Kind::high_pass),
                   drive = best_of(base, terms, Kind::drive);
@@ -382,7 +209,7 @@ void distinguish(const Trace& trace, const PlateauSearch& search, const Readings
     const double left = cross.found.left - part * part * noise_of(readings, cross.term->columns);
     crosses = std::abs(mean.value - away) < kZeroAgrees * std::abs(away) + kZeroErrors * mean.std_error &&
               std::abs(mean.value) > kZeroErrors * mean.std_error &&
-              !(sag && odds_of(readings, sag.found.left, left) > kClearEvidence);
+              !(sag && odds_of(readings, sag.found.left, left) > 0.5 * kSignificance * kSignificance);
   }
   const bool drives =
       !crosses && drive && !(sag && moves + odds_of(readings, drive.found.left, sag.found.left) < kClearEvidence);
@@ -392,8 +219,8 @@ void distinguish(const Trace& trace, const PlateauSearch& search, const Readings
 }
 
 /// Terms that are there, the clearest first.
-std::vector<const Term*> select_terms(const Readings& readings, const std::vector<Term>& terms, Model& model,
-                                      double& creep) {
+std::vector<const Term*> select_terms(const RestReadings& readings, const std::vector<Term>& terms,
+                                      RestRegression& model, double& creep) {
   std::vector<const Term*> chosen;
   std::vector<Kind> kinds{Kind::high_pass, Kind::crosstalk, Kind::drive, Kind::creep, Kind::ripple};
   for (;;) {
@@ -408,13 +235,14 @@ std::vector<const Term*> select_terms(const Readings& readings, const std::vecto
     std::erase(kinds, best.term->kind);
     // What creeps is no drive that slows down, and the other way round nothing is known.
     if (best.term->kind == Kind::creep) std::erase(kinds, Kind::drive);
-    model.add(*best.term);
+    model.add(best.term->columns);
     chosen.push_back(best.term);
   }
 }
 
 /// The ripple of a model, by omega t or by the angle turned.
-void read_ripple(const Readings& readings, double omega, int order, Index at, Model& model, RestModel& out) {
+void read_ripple(const RestReadings& readings, double omega, int order, Index at, RestRegression& model,
+                 RestModel& out) {
   const auto read = [&] {
     const VectorXd wave = model.design().middleCols(at, 2) * model.settled().x.segment<2>(at);
     return ripple_of(model.settled(), at, (readings.velocity - wave).mean(), order);
@@ -466,11 +294,11 @@ std::vector<double> disc_factor(const RestModel& model, double omega, const Trac
 
 RestModel fit_rest(const Trace& trace, const PlateauSearch& search, const RestTerms& asked, const Estimate& mean) {
   RestModel out;
-  const Readings readings = readings_of(search, search.plateaus.runs);
+  const RestReadings readings = rest_readings(search);
   out.sticks = readings.sticks.size();
   if (out.sticks < kFewestForMedian) return out;
   std::vector<Term> terms = terms_of(trace, search, readings, asked);
-  Model model(readings);
+  RestRegression model(readings);
   const auto corner = [](const Estimate& slope) {
     return Estimate{-slope.value / (2 * std::numbers::pi), slope.std_error / (2 * std::numbers::pi)};
   };
