@@ -26,15 +26,17 @@ namespace tribofit::diagnosis {
 
 namespace {
 
-/// Prepares the trace again without undoing the high-pass, and keeps that where a contact that turns with the disc
-/// explains the sag of the plateau.
-void reconsider_high_pass(const Instruments& instruments, PreparedTrace& prepared) {
+/// Prepares the trace again without undoing the high-pass, or following a disc that slows down, and keeps that where a
+/// contact that turns with the disc explains the sag of the plateau.
+void reconsider_sag(const Instruments& instruments, PreparedTrace& prepared) {
   const Identification& trace = prepared.trace;
-  if (!trace.analysed || !(trace.motion.high_pass > 0) || instruments.vibrometer.high_pass) return;
+  const bool slows = trace.motion.drive_compliance.any();
+  if (!trace.analysed || !(trace.motion.high_pass > 0 || slows) || instruments.vibrometer.high_pass) return;
   MotionOptions raw = prepared.motion;
   raw.undo_high_pass = false;
+  raw.undo_speed_ripple &= !slows;
   Identification plain = prepared.prepare(raw);
-  // Where the high-pass would leave the plateau off, the spin explains by one effect what else takes two.
+  // Where what was undone would leave the plateau off, the spin explains by one effect what else takes two.
   const double at_least = plateau_is_off(trace.motion, instruments) ? 0 : limits::kFallOfSag;
   if (!plain.analysed || !spins_rather_than_sags(plain.motion, plain.segmentation, at_least)) return;
   prepared.motion = raw;
@@ -265,7 +267,7 @@ std::optional<Estimate> shared_friction_filter(const std::vector<Identification>
 
 PreparedTrace prepare_to_diagnose(const PrepareTrace& prepare, const IdentifyOptions& options) {
   PreparedTrace prepared{prepare(options.motion), options.motion, prepare};
-  reconsider_high_pass(options.instruments, prepared);
+  reconsider_sag(options.instruments, prepared);
   correct_plateau(options.instruments, prepared);
   remove_load_coupling(prepared.trace);
   return prepared;

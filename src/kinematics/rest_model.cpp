@@ -98,13 +98,18 @@ std::vector<Term> terms_of(const Trace& trace, const PlateauSearch& search, cons
       terms.push_back({Kind::drive, tau, readings.means(late)});
     }
   }
+  // A bristle creeps by 1/(1 - m), m = mu/mu_s; a disc that turns under the pad by m/sqrt(1 - m), from
+  // m = 2 s (sqrt(1 + s^2) - s), s = v_r/(omega R).
   for (const double above : kStaticOverHighest) {
-    VectorXd creep(mu.size());
+    VectorXd bristle(mu.size()), spin(mu.size());
     for (const RestReadings::Stick& one : readings.sticks) {
       const ArrayXd here = mu.segment(one.begin, one.size).array().abs();
-      creep.segment(one.begin, one.size) = -1 / (1 - here / (above * here.maxCoeff()));
+      const ArrayXd part = here / (above * here.maxCoeff());
+      bristle.segment(one.begin, one.size) = -1 / (1 - part);
+      spin.segment(one.begin, one.size) = -part / (1 - part).sqrt();
     }
-    terms.push_back({Kind::creep, above, creep});
+    terms.push_back({Kind::creep, above, bristle});
+    terms.push_back({Kind::creep, above, spin});
   }
   const double span = readings.time.maxCoeff() - readings.time.minCoeff();
   const double turns = std::abs(asked.disc_speed) * span / (2 * std::numbers::pi);
@@ -201,20 +206,24 @@ void distinguish(const Trace& trace, const PlateauSearch& search, const RestRead
   const double moves = odds_of_motion(trace, search);
   const Candidate cross = best_of(base, terms, Kind::crosstalk), sag = best_of(base, terms, Kind::high_pass),
                   drive = best_of(base, terms, Kind::drive);
+  constexpr double significant = 0.5 * kSignificance * kSignificance;
   bool crosses = false;
   if (cross && moves < -kClearEvidence) {
     // The block seems to go away by as much as friction adds to its velocity, and the displacement does not explain
     // more than noisy friction can.
     const double part = cross.found.x(2), away = part * mean_of(trace.friction);
-    const double left = cross.found.left - part * part * noise_of(readings, cross.term->columns);
+    const double left = cross.found.left - 2 * part * part * noise_of(readings, cross.term->columns);
     crosses = std::abs(mean.value - away) < kZeroAgrees * std::abs(away) + kZeroErrors * mean.std_error &&
               std::abs(mean.value) > kZeroErrors * mean.std_error &&
-              !(sag && odds_of(readings, sag.found.left, left) > 0.5 * kSignificance * kSignificance);
+              !(sag && odds_of(readings, sag.found.left, left) > significant);
   }
-  const bool drives =
+  // A contact that turns with the disc creeps nearly in proportion to friction too: a drive must explain clearly more.
+  const Candidate creep = best_of(base, terms, Kind::creep);
+  const bool is_true =
       !crosses && drive && !(sag && moves + odds_of(readings, drive.found.left, sag.found.left) < kClearEvidence);
+  const bool drives = is_true && !(creep && odds_of(readings, drive.found.left, creep.found.left) < significant);
   if (!crosses) erase(terms, Kind::crosstalk);
-  if (crosses || drives) erase(terms, Kind::high_pass);
+  if (crosses || is_true) erase(terms, Kind::high_pass);
   if (!drives) erase(terms, Kind::drive);
 }
 
