@@ -12,7 +12,6 @@
 #include "load_point.hpp"
 #include "motion_channels.hpp"
 #include "motion_stages.hpp"
-#include "plateau_ratio.hpp"
 #include "records_without_motion.hpp"
 #include "spring_slider.hpp"
 #include "tribofit/execution/parallel.hpp"
@@ -170,17 +169,15 @@ void MotionStages::follow_disc() {
   for (int round = 0; round == 0 || (is_read && round < kRounds); ++round) {
     disc_at_rest_ =
         kinematics::fit_rest(trace_, search_, {.drive = slows, .disc_speed = std::abs(omega) > 0 ? omega : 0}, {});
-    if (is_read && disc_at_rest_.level != 0) omega = disc_at_rest_.level / trace_.conditions.radius.value;
+    if (is_read && disc_at_rest_.level.value != 0) omega = disc_at_rest_.level.value / trace_.conditions.radius.value;
   }
-  const bool found = disc_at_rest_.ripple_is_found || disc_at_rest_.drive.any();
-  follows_disc_ = found && options_.undo_speed_ripple;
-  if (!found) return;
-  if (!speed_was_stated_) disc_.constant = disc_at_rest_.level;
+  if (!disc_at_rest_.ripple_is_found && !disc_at_rest_.drive.any()) return;
+  if (!speed_was_stated_) disc_.constant = disc_at_rest_.level.value;
   if (is_read) trace_.conditions.speed.value = omega;
-  if (!follows_disc_) return;
+  if (!options_.undo_speed_ripple) return;
   if (motion_.high_pass > 0) take_disc_off_high_pass();
-  const std::vector<double> factor = kinematics::disc_factor(disc_at_rest_, omega, trace_, motion_.step);
-  kinematics::flatten(search_, factor);
+  disc_factor_ = kinematics::disc_factor(disc_at_rest_, omega, trace_, motion_.step);
+  kinematics::flatten(search_, disc_factor_);
   plateau_ = kinematics::final_level(search_.plateaus);
   if (disc_at_rest_.ripple_is_found) {
     const DiscRipple& ripple = motion_.speed_ripple = disc_at_rest_.ripple;
@@ -193,7 +190,7 @@ void MotionStages::follow_disc() {
   if (!disc_at_rest_.drive.any()) return;
   // Over its speed without friction.
   const Estimate& drive = disc_at_rest_.drive;
-  const double free = disc_at_rest_.level - drive.value * disc_at_rest_.friction_at_rest;
+  const double free = disc_at_rest_.level.value - drive.value * disc_at_rest_.friction_at_rest;
   motion_.drive_compliance = {-drive.value / free, drive.std_error / std::abs(free)};
   motion_.drive_time = disc_at_rest_.drive_time;
   motion_.notes.push_back(
@@ -205,7 +202,7 @@ void MotionStages::follow_disc() {
 
 /// The integration constants of an undone high-pass came from plateaus with the ripple on them.
 void MotionStages::take_disc_off_high_pass() {
-  const double shift = disc_.constant - disc_at_rest_.level;
+  const double shift = disc_.constant - disc_at_rest_.level.value;
   for (std::size_t i = 0; i < trace_.size(); ++i) {
     trace_.velocity[i] += shift - disc_at_rest_.drift * (trace_.time[i] - disc_at_rest_.middle);
   }
@@ -225,14 +222,29 @@ std::size_t MotionStages::run_up() const {
   return samples + 2 > trace_.size() ? 0 : samples;
 }
 
+/// What v_b reads at rest over omega r, from the sticks that the motion will have.
+void MotionStages::measure_ratio() {
+  run_up_ = run_up();
+  if (!is_block() || !speed_was_stated_ || !search_.sticks || disc_.largest == 0) return;
+  kinematics::PlateauSearch relative = search_;
+  std::erase_if(relative.plateaus.runs, [&](const kinematics::StickPlateau& run) {
+    return options_.trim && run.begin * search_.blocks.length < run_up_;
+  });
+  for (std::size_t b = 0; b < relative.blocks.mean.size(); ++b)
+    relative.blocks.mean[b] /= search_.disc.mean.empty() ? disc_.constant : search_.disc.mean[b];
+  relative.disc = {};
+  ratio_ = kinematics::fit_rest(trace_, relative, {}, {}).level;
+  if (motion_.high_pass == 0 || disc_.constant == 0) return;
+  // The level of v_b is an integration constant there: that the block goes nowhere says where it is.
+  net_velocity_ =
+      kinematics::mean_velocity(kinematics::positions_in_plateaus(trace_.time, trace_.velocity, search_, threads_));
+  if (disc_.constant < 0) net_velocity_.value = -net_velocity_.value;  // along omega r
+}
+
 /// v_r, without the run-up and the ends that a correction has lost.
 void MotionStages::make_relative_motion() {
-  run_up_ = run_up();
   const std::size_t head = std::max(lost_.head, options_.trim ? run_up_ : 0);
-  if (follows_disc_) {
-    const double omega = kinematics::steady_speed(trace_);
-    kinematics::impose(kinematics::disc_factor(disc_at_rest_, omega, trace_, motion_.step), omega, trace_, disc_);
-  }
+  if (!disc_factor_.empty()) kinematics::impose(disc_factor_, kinematics::steady_speed(trace_), trace_, disc_);
   if (is_block()) kinematics::make_relative(trace_.velocity, disc_, threads_);
   const std::pair<std::vector<double>*, std::vector<double>*> channels[] = {
       {&trace_.time, &motion_.time},
@@ -259,7 +271,7 @@ void MotionStages::make_relative_motion() {
 }
 
 void MotionStages::settle_signs_and_levels() {
-  const bool constant = disc_.known && (motion_.disc_velocity.empty() || follows_disc_);
+  const bool constant = disc_.known && (motion_.disc_velocity.empty() || !disc_factor_.empty());
   motion_.constant_disc_velocity = constant ? disc_.constant : 0;
   motion_.sticks = search_.sticks;
   motion_.velocity_noise = std::max(search_.noise, samples_->velocity_step() / std::sqrt(12.0));
@@ -295,8 +307,8 @@ Motion compute_motion(Trace trace, const Instruments& instruments, const MotionO
        {&Stages::look_at_recording, &Stages::correct_declared, &Stages::find_disc, &Stages::find_plateau,
         &Stages::find_direction, &Stages::read_at_rest, &Stages::undo_high_pass, &Stages::undo_distortions,
         &Stages::find_speed_steps, &Stages::take_speed_from_plateau, &Stages::follow_disc, &Stages::check_clipping,
-        &Stages::add_sensor_mass, &Stages::make_relative_motion, &Stages::settle_signs_and_levels,
-        &Stages::check_health, &Stages::compare_plateau}) {
+        &Stages::add_sensor_mass, &Stages::measure_ratio, &Stages::make_relative_motion,
+        &Stages::settle_signs_and_levels, &Stages::check_health, &Stages::compare_plateau}) {
     stop_point();
     (stages.*stage)();
   }

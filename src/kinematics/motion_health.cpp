@@ -8,7 +8,6 @@
 
 #include "limits.hpp"
 #include "motion_stages.hpp"
-#include "plateau_ratio.hpp"
 #include "resolution.hpp"
 #include "tribofit/execution/parallel.hpp"
 #include "tribofit/ingest/units.hpp"
@@ -151,14 +150,16 @@ void MotionStages::compare_plateau() {
   // What moves a velocity that is nonlinear from omega r is neither radius nor gain.
   const bool is_nonlinear = samples_->velocity_is_slew_limited() ||
                             (zero_.kind == BlockZero::Kind::uneven && !motion_.velocity_response.any());
-  if (!is_block() || !speed_was_stated_ || !search_.sticks || is_nonlinear) return;
-  kinematics::PlateauRatio ratio = plateau_ratio(motion_, plateaus_in_motion(), search_.blocks.length);
-  const double rounding = kinematics::rounding_of_level(samples_->velocity_step(), search_.noise);
-  if (disc_.largest > 0) ratio.std_error = std::hypot(ratio.std_error, rounding / disc_.largest);
-  if (disc_.largest > 0) ratio.std_error = std::hypot(ratio.std_error, motion_.velocity_zero.std_error / disc_.largest);
-  motion_.plateau_ratio = ratio.value;
-  motion_.plateau_ratio_std_error = ratio.std_error;
-  motion_.plateau_ratio_in_motion = ratio.in_motion;
+  if (ratio_.value == 0 || is_nonlinear) return;
+  const double rounding = kinematics::rounding_of_level(samples_->velocity_step(), search_.noise) / disc_.largest;
+  const double zero = motion_.velocity_zero.std_error / disc_.largest;
+  motion_.plateau_ratio_in_motion = motion_.plateau_ratio = ratio_.value;
+  motion_.plateau_ratio_std_error = std::hypot(std::hypot(ratio_.std_error, rounding), zero);
+  if (motion_.high_pass > 0) {
+    motion_.plateau_ratio -= net_velocity_.value / disc_.largest;
+    motion_.plateau_ratio_std_error =
+        std::hypot(motion_.plateau_ratio_std_error, net_velocity_.std_error / disc_.largest, kErrorAfterHighPass);
+  }
   correct_plateau(motion_, options_.plateau);
 }
 

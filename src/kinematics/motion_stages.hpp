@@ -36,6 +36,7 @@ class MotionStages {
   void follow_disc();
   void check_clipping();
   void add_sensor_mass();
+  void measure_ratio();
   void make_relative_motion();
   void settle_signs_and_levels();
   void check_health();
@@ -89,7 +90,9 @@ class MotionStages {
   ClockDriftEstimate clocks_;
   std::vector<SpeedLevel> speed_levels_;  ///< of a disc whose speed steps, unsaid
   RestModel disc_at_rest_;                ///< of a velocity that is put right, with the speed of the disc
-  bool follows_disc_ = false;
+  std::vector<double> disc_factor_;       ///< omega r over its level, every sample; empty: one speed
+  Estimate ratio_;                        ///< of the reading at rest to omega r; 0: not known
+  Estimate net_velocity_;                 ///< of the block along omega r, behind a high-pass that was undone [m/s]
   std::size_t run_up_ = 0;
 };
 

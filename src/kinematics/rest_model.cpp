@@ -10,6 +10,7 @@
 #include "limits.hpp"
 #include "rest_readings.hpp"
 #include "static_responses.hpp"
+#include "statistics/low_pass.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/statistics/polynomials.hpp"
 #include "tribofit/statistics/quantiles.hpp"
@@ -94,7 +95,7 @@ std::vector<Term> terms_of(const Trace& trace, const PlateauSearch& search, cons
     for (double tau = kFastestDrive * stick; tau < kSlowestDrive * stick; tau *= kNextDrive) {
       if (tau < step) continue;
       std::vector<double> late = friction;
-      low_pass(late, tau, step);
+      low_pass(late, step / tau);
       terms.push_back({Kind::drive, tau, readings.means(late)});
     }
   }
@@ -277,14 +278,6 @@ void read_ripple(const RestReadings& readings, double omega, int order, Index at
 
 }  // namespace
 
-void low_pass(std::span<double> signal, double time_constant, double step) {
-  if (!(time_constant > 0) || signal.empty()) return;
-  const auto first = std::clamp<std::size_t>(static_cast<std::size_t>(time_constant / step), 1, signal.size());
-  const double follows = -std::expm1(-step / time_constant);
-  double state = mean_of(signal.first(first));
-  for (double& x : signal) x = state += follows * (x - state);
-}
-
 std::vector<double> disc_factor(const RestModel& model, double omega, const Trace& trace, double step) {
   std::vector<double> factor(trace.size(), 1.0);
   const DiscRipple& ripple = model.ripple;
@@ -295,8 +288,8 @@ std::vector<double> disc_factor(const RestModel& model, double omega, const Trac
   }
   if (!model.drive.any()) return factor;
   std::vector<double> friction = trace.friction;
-  low_pass(friction, model.drive_time, step);
-  const double slows = model.drive.value / model.level;
+  if (model.drive_time > 0) low_pass(friction, step / model.drive_time);
+  const double slows = model.drive.value / model.level.value;
   for (std::size_t i = 0; i < factor.size(); ++i) factor[i] *= 1 + slows * (friction[i] - model.friction_at_rest);
   return factor;
 }
@@ -327,7 +320,7 @@ RestModel fit_rest(const Trace& trace, const PlateauSearch& search, const RestTe
   const LinearFit& all = model.settled();
   if (all.x.size() == 0) return out;
   out.sticks = model.sticks();
-  out.level = all.x(0);
+  out.level = estimate_at(all, 0);
   out.middle = readings.time.mean();
   out.drift = all.x(1) / (0.5 * (readings.time.maxCoeff() - readings.time.minCoeff()));
   Index at = 2;
@@ -342,9 +335,10 @@ RestModel fit_rest(const Trace& trace, const PlateauSearch& search, const RestTe
         break;
       case Kind::drive:
         out.drive = value, out.drive_time = term->shape, out.friction_at_rest = term->columns.mean();
-        out.level += out.drive.value * out.friction_at_rest;
+        out.level.value += out.drive.value * out.friction_at_rest;
         break;
-      case Kind::creep:
+      case Kind::creep:  // a real contact rings, and its static friction is not known that well
+        out.level.std_error = std::hypot(out.level.std_error, kErrorOfCreep * value.value * term->columns.mean());
         break;
       case Kind::ripple:
         out.ripple_is_found = true;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <vector>
 
 #include "plateau_search.hpp"
@@ -33,9 +32,10 @@ struct RestTerms {
 /// it straight over time; and behind crosstalk the block seems to go away with c times the mean friction, behind a
 /// high-pass it goes nowhere.
 struct RestModel {
-  double level = 0, drift = 0, middle = 0;  ///< [m/s], at the mean friction at rest; [m/s^2], [s]
-  std::size_t sticks = 0;                   ///< used
-  Estimate high_pass;                       ///< f_c [Hz], the best one beside level and drift alone
+  Estimate level;                ///< [m/s], at the mean friction at rest where the disc slows down, without creep
+  double drift = 0, middle = 0;  ///< [m/s^2], [s]
+  std::size_t sticks = 0;        ///< used
+  Estimate high_pass;            ///< f_c [Hz], the best one beside level and drift alone
   bool high_pass_is_found = false;
   Estimate crosstalk, drive;    ///< c, d [m/s over the unit of friction]; 0: none
   double drive_time = 0;        ///< time constant of the drive [s]
@@ -49,9 +49,6 @@ struct RestModel {
 /// mean: velocity of the block as read, from stick to stick [m/s]. Cost: a few passes over the blocks, and a thousand
 /// times the rows of the sticks.
 RestModel fit_rest(const Trace& trace, const PlateauSearch& search, const RestTerms& terms, const Estimate& mean);
-
-/// First-order low-pass of a signal, from its mean over the first time constant on; in place.
-void low_pass(std::span<double> signal, double time_constant, double step);
 
 /// omega r of every sample over its level: the ripple, and what friction slows the disc down by. omega: its mean speed
 /// [rad/s].
