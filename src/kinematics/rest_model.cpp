@@ -213,7 +213,7 @@ void distinguish(const Trace& trace, const PlateauSearch& search, const RestRead
     // The block seems to go away by as much as friction adds to its velocity, and the displacement does not explain
     // more than noisy friction can.
     const double part = cross.found.x(2), away = part * mean_of(trace.friction);
-    const double left = cross.found.left - 2 * part * part * noise_of(readings, cross.term->columns);
+    const double left = cross.found.left - part * part * noise_of(readings, cross.term->columns);
     crosses = std::abs(mean.value - away) < kZeroAgrees * std::abs(away) + kZeroErrors * mean.std_error &&
               std::abs(mean.value) > kZeroErrors * mean.std_error &&
               !(sag && odds_of(readings, sag.found.left, left) > significant);
@@ -243,7 +243,7 @@ std::vector<const Term*> select_terms(const RestReadings& readings, const std::v
     if (!best) return chosen;
     if (best.term->kind == Kind::creep) creep = size_of(readings, *best.term, best.found);
     std::erase(kinds, best.term->kind);
-    // What creeps is no drive that slows down, and the other way round nothing is known.
+    // What creeps explains what a drive would; a drive that was taken before it is doubted in fit_rest.
     if (best.term->kind == Kind::creep) std::erase(kinds, Kind::drive);
     model.add(best.term->columns);
     chosen.push_back(best.term);

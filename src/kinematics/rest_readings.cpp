@@ -96,7 +96,7 @@ RestReadings rest_readings(const PlateauSearch& search) {
   RestReadings readings;
   for (const StickPlateau& run : runs) {
     const std::size_t size = run.inner_end() - run.inner_begin(), count = std::min(size, kMostPieces);
-    if (static_cast<double>(run.size()) < least || count < 3) continue;
+    if (static_cast<double>(run.size()) < least || count < kFewestForMedian) continue;
     readings.sticks.push_back({static_cast<Index>(readings.pieces.size()), static_cast<Index>(count),
                                static_cast<double>(run.size()) * search.blocks.step});
     for (std::size_t k = 0; k < count; ++k)

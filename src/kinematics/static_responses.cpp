@@ -94,13 +94,19 @@ UndoneResponse response_without_displacement(const PlateauSearch& search, Static
   return {response, std::hypot(mean.std_error / slope, kOtherCharacteristic * part)};
 }
 
-/// The blocks of a plateau about its middle in which the velocity is at rest but for noise: where sticks are short
-/// beside slips, the ends of a plateau slide.
+/// The blocks of a plateau about its middle in which the velocity is at rest but for noise, on a straight line, level
+/// or not: where sticks are short beside slips, the ends of a plateau slide.
 StickPlateau at_rest(const PlateauSearch& search, const StickPlateau& run) {
   const double most = std::max(kPieceNoise * search.noise, kRestDepth * search.plateaus.depth);
+  std::vector<double> velocity(search.blocks.mean.begin() + static_cast<std::ptrdiff_t>(run.begin),
+                               search.blocks.mean.begin() + static_cast<std::ptrdiff_t>(run.end));
+  for (std::size_t b = 0; b < velocity.size() && !search.disc.mean.empty(); ++b)
+    velocity[b] -= search.disc.mean[run.begin + b];
+  const std::size_t first = run.inner_begin() - run.begin;
+  const StraightLine line = fit_line(std::span(velocity).subspan(first, run.inner_end() - run.inner_begin()));
   const auto rests = [&](std::size_t b) {
-    const double disc = search.disc.mean.empty() ? 0 : search.disc.mean[b];
-    return std::abs(search.blocks.mean[b] - disc - run.level) <= most;
+    const std::size_t k = b - run.begin;
+    return std::abs(velocity[k] - line.at(static_cast<double>(k) - static_cast<double>(first))) <= most;
   };
   StickPlateau rest{(run.begin + run.end) / 2, (run.begin + run.end) / 2, run.level};
   while (rest.begin > run.begin && rests(rest.begin - 1)) --rest.begin;

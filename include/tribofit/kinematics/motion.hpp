@@ -142,10 +142,12 @@ struct Motion {
 };
 
 struct MotionOptions {
-  bool trim = true;               ///< cut the run-up where the plateau is not within 2 % of its final value
-  bool undo_high_pass = true;     ///< undo a first-order high-pass found on the velocity
-  bool undo_speed_ripple = true;  ///< let omega r follow a ripple found on the plateaus
-  bool undo_distortions = true;   ///< zero, low-pass and response of the velocity, response of friction, clocks
+  bool trim = true;            ///< cut the run-up where the plateau is not within 2 % of its final value
+  bool undo_high_pass = true;  ///< undo a first-order high-pass found on the velocity
+  bool undo_speed_ripple =
+      true;  ///< let omega r follow a ripple, or a drive that friction slows, found on the plateaus
+  bool undo_distortions =
+      true;  ///< zero, crosstalk, low-pass and response of the velocity, response of friction, clocks
   /// Move friction by the delay of a declared bandwidth; false: the model that is fitted holds the filter itself.
   bool undo_bandwidth = true;
   PlateauCorrection plateau = PlateauCorrection::none;
