@@ -94,7 +94,7 @@ inline constexpr double kFittable = 1e-8;  // reciprocal condition of the fit: b
 /// Standard deviations from which a level is left out of the next fit, and part of them that must remain; rounding.
 inline constexpr double kFarLevel = 5, kLevelsKept = 0.7, kRoundingOfLevel = 1e-9;
 /// Time constants of a drive that are tried, over the usual stick, each so many times the one before.
-inline constexpr double kFastestDrive = 0.02, kSlowestDrive = 2, kNextDrive = 1.4;
+inline constexpr double kFastestDrive = 0.02, kSlowestDrive = 2, kNextDrive = 1.1;
 /// Static friction over the highest in the middle of a stick, as it may be where the contact creeps.
 inline constexpr double kStaticOverHighest[] = {1.01, 1.03, 1.06, 1.1, 1.2};
 inline constexpr int kHighestOrder = 6;  // of a ripple

@@ -10,6 +10,7 @@
 #include "limits.hpp"
 #include "rest_readings.hpp"
 #include "static_responses.hpp"
+#include "statistics/linear_algebra.hpp"
 #include "statistics/low_pass.hpp"
 #include "statistics/reductions.hpp"
 #include "tribofit/statistics/polynomials.hpp"
@@ -200,6 +201,21 @@ double noise_of(const RestReadings& readings, const VectorXd& rising) {
   return squares;
 }
 
+/// Whether a term leaves the course of the readings over a stick, in its time, straight: else it is not of that form.
+bool has_its_form(const RestReadings& readings, RestRegression model, const Term& term) {
+  model.add(term.columns);
+  MatrixXd course(readings.velocity.size(), 2);
+  for (const RestReadings::Stick& stick : readings.sticks) {
+    const ArrayXd at = ArrayXd::LinSpaced(stick.size, -1, 1);
+    course.middleRows(stick.begin, stick.size) << at.square(), at.cube();
+  }
+  const LinearFit found = model.with(course, true);
+  if (found.covariance.size() == 0) return true;
+  const VectorXd value = found.x.tail<2>();
+  const double squares = value.dot(solve_symmetric(found.covariance.bottomRightCorner<2, 2>(), value).col(0));
+  return squares < kSignificance * kSignificance;
+}
+
 /// Leaves of the terms that look alike in stick those that explain the record.
 void distinguish(const Trace& trace, const PlateauSearch& search, const RestReadings& readings, const Estimate& mean,
                  std::vector<Term>& terms) {
@@ -222,7 +238,8 @@ void distinguish(const Trace& trace, const PlateauSearch& search, const RestRead
   const Candidate creep = best_of(base, terms, Kind::creep);
   const bool is_true =
       !crosses && drive && !(sag && moves + odds_of(readings, drive.found.left, sag.found.left) < kClearEvidence);
-  const bool drives = is_true && !(creep && odds_of(readings, drive.found.left, creep.found.left) < significant);
+  const bool drives = is_true && has_its_form(readings, base, *drive.term) &&
+                      !(creep && odds_of(readings, drive.found.left, creep.found.left) < significant);
   if (!crosses) erase(terms, Kind::crosstalk);
   if (crosses || is_true) erase(terms, Kind::high_pass);
   if (!drives) erase(terms, Kind::drive);
@@ -243,8 +260,9 @@ std::vector<const Term*> select_terms(const RestReadings& readings, const std::v
     if (!best) return chosen;
     if (best.term->kind == Kind::creep) creep = size_of(readings, *best.term, best.found);
     std::erase(kinds, best.term->kind);
-    // What creeps explains what a drive would; a drive that was taken before it is doubted in fit_rest.
-    if (best.term->kind == Kind::creep) std::erase(kinds, Kind::drive);
+    // Beside creep, whose form is not known that well, what else falls in stick cannot be told; a drive that was taken
+    // before it is doubted in fit_rest.
+    if (best.term->kind == Kind::creep) std::erase_if(kinds, [](Kind kind) { return kind != Kind::ripple; });
     model.add(best.term->columns);
     chosen.push_back(best.term);
   }

@@ -94,19 +94,13 @@ UndoneResponse response_without_displacement(const PlateauSearch& search, Static
   return {response, std::hypot(mean.std_error / slope, kOtherCharacteristic * part)};
 }
 
-/// The blocks of a plateau about its middle in which the velocity is at rest but for noise, on a straight line, level
-/// or not: where sticks are short beside slips, the ends of a plateau slide.
+/// The blocks of a plateau about its middle in which the velocity is at rest but for noise: where sticks are short
+/// beside slips, the ends of a plateau slide.
 StickPlateau at_rest(const PlateauSearch& search, const StickPlateau& run) {
   const double most = std::max(kPieceNoise * search.noise, kRestDepth * search.plateaus.depth);
-  std::vector<double> velocity(search.blocks.mean.begin() + static_cast<std::ptrdiff_t>(run.begin),
-                               search.blocks.mean.begin() + static_cast<std::ptrdiff_t>(run.end));
-  for (std::size_t b = 0; b < velocity.size() && !search.disc.mean.empty(); ++b)
-    velocity[b] -= search.disc.mean[run.begin + b];
-  const std::size_t first = run.inner_begin() - run.begin;
-  const StraightLine line = fit_line(std::span(velocity).subspan(first, run.inner_end() - run.inner_begin()));
   const auto rests = [&](std::size_t b) {
-    const std::size_t k = b - run.begin;
-    return std::abs(velocity[k] - line.at(static_cast<double>(k) - static_cast<double>(first))) <= most;
+    const double disc = search.disc.mean.empty() ? 0 : search.disc.mean[b];
+    return std::abs(search.blocks.mean[b] - disc - run.level) <= most;
   };
   StickPlateau rest{(run.begin + run.end) / 2, (run.begin + run.end) / 2, run.level};
   while (rest.begin > run.begin && rests(rest.begin - 1)) --rest.begin;
@@ -196,7 +190,8 @@ struct StickRamps {
   double largest = 0;  ///< friction
 };
 
-StickRamps ramps_of(const Trace& trace, const PlateauSearch& search) {
+/// may_sag: a plateau that is not level is at rest too.
+StickRamps ramps_of(const Trace& trace, const PlateauSearch& search, bool may_sag) {
   const std::size_t length = search.blocks.length;
   const BlockMeans friction = block_means(trace.friction, length, search.blocks.step);
   std::vector<double> force = friction.mean;
@@ -209,7 +204,7 @@ StickRamps ramps_of(const Trace& trace, const PlateauSearch& search) {
   const std::vector<double> turned = search.disc.mean.empty() ? std::vector<double>() : running_sum(search.disc.mean);
   StickRamps ramps{{}, {}, {}, largest_of(friction.mean)};
   for (const StickPlateau& run : search.plateaus.runs) {
-    const StickPlateau rest = at_rest(search, run);
+    const StickPlateau rest = may_sag ? run : at_rest(search, run);
     const std::size_t first = rest.inner_begin(), size = rest.inner_end() - first;
     if (size < kFewestBlocks) continue;
     const auto n = static_cast<Eigen::Index>(size);
@@ -246,7 +241,7 @@ UndoneResponse find_velocity_response(const Trace& trace, const PlateauSearch& s
 }
 
 StickBends bends_in_stick(const Trace& trace, const PlateauSearch& search) {
-  const StickRamps ramps = ramps_of(trace, search);
+  const StickRamps ramps = ramps_of(trace, search, true);
   if (ramps.over_way.size() < kFewestForMedian) return {};
   const StaticResponse straight{Form::linear, 0, ramps.largest};
   const Curvature way = curvature_of(ramps.over_way, straight), disc = curvature_of(ramps.over_disc, straight);
@@ -254,7 +249,7 @@ StickBends bends_in_stick(const Trace& trace, const PlateauSearch& search) {
 }
 
 UndoneResponse find_friction_response(const Trace& trace, const PlateauSearch& search) {
-  const StickRamps ramps = ramps_of(trace, search);
+  const StickRamps ramps = ramps_of(trace, search, false);
   if (ramps.over_way.size() < 2 * kFewestPeriods) return {};
   const auto straighten = [&](Form form) -> Straightened {
     StaticResponse response{form, 0, ramps.largest};
