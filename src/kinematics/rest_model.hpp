@@ -21,16 +21,17 @@ struct RestTerms {
 ///   v = level + drift (t - middle) - 2 pi f_c x + c mu + d LP(mu) - e/(1 - mu/mu_s) + level A cos(n theta + phase)
 ///
 /// with a high-pass of the vibrometer at f_c (x: integral of v as read), crosstalk of friction into the velocity, a
-/// disc that slows down under friction (LP: a first order), creep of the contact before it breaks away at mu_s (Canudas
-/// de Wit 1995 with mu = sigma0 z), and a speed of the disc that follows its angle theta: omega t, or the angle turned,
-/// whichever fits better.
+/// disc that slows down under friction (LP: a first order), creep of the contact before it breaks away at mu_s (a
+/// bristle, Canudas de Wit 1995 with mu = sigma0 z; of a disc that turns under the pad m/sqrt(1 - m), m = mu/mu_s), and
+/// a speed of the disc that follows its angle theta: omega t, or the angle turned, whichever fits better.
 ///
 /// Each term is tried beside those that are there; the one that leaves least is taken where it is six standard errors
 /// large (from stick to stick), matters, and is the same in both halves of the record. Levels of sticks wander: they
 /// are random effects. A spring pulls in proportion to the displacement, so that in stick x, mu and LP(mu) look alike.
 /// What is true of v_b (drive, creep) leaves friction straight over x, what is only read (high-pass, crosstalk) leaves
 /// it straight over time; and behind crosstalk the block seems to go away with c times the mean friction, behind a
-/// high-pass it goes nowhere.
+/// high-pass it goes nowhere. A drive must also explain clearly more than creep does, and leave nothing that follows
+/// the time in a stick: beside creep nothing else that falls is named.
 struct RestModel {
   Estimate level;                ///< [m/s], at the mean friction at rest where the disc slows down, without creep
   double drift = 0, middle = 0;  ///< [m/s^2], [s]
